@@ -1,0 +1,43 @@
+//! Mathematics that has never heard of leaves. Vectors are glam's `DVec2`.
+
+pub mod bspline;
+pub mod noise;
+pub mod point_grid;
+pub mod point_index;
+pub mod polygon;
+pub mod scatter;
+pub mod segments;
+
+pub use glam::DVec2;
+
+/// An axis-aligned box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rect {
+    /// The corner with the least coordinates.
+    pub min: DVec2,
+    /// The corner with the greatest coordinates.
+    pub max: DVec2,
+}
+
+impl Rect {
+    /// The smallest box around some points; empty (min > max) around none.
+    #[must_use]
+    pub fn around(points: impl IntoIterator<Item = DVec2>) -> Self {
+        let empty = Self { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
+        points
+            .into_iter()
+            .fold(empty, |rect, p| Self { min: rect.min.min(p), max: rect.max.max(p) })
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> DVec2 {
+        self.max - self.min
+    }
+
+    /// The same, larger by `by` on every side.
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        Self { min: self.min - DVec2::splat(by), max: self.max + DVec2::splat(by) }
+    }
+}

@@ -1,0 +1,234 @@
+//! Simple closed polygons: area, winding, containment, crossings, resampling.
+//!
+//! A polygon is a slice of vertices; the first is not repeated at the end. Every function is total
+//! on finite input and linear in the number of vertices, unless it says otherwise.
+
+use super::{DVec2, segments::SegmentIndex};
+
+/// Twice the signed area of the triangle a, b, c: positive when they turn anticlockwise.
+#[must_use]
+pub fn cross(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// The area, positive when the vertices run anticlockwise (y up).
+#[must_use]
+pub fn signed_area(polygon: &[DVec2]) -> f64 {
+    // Relative to the first vertex: far from the origin the terms would cancel badly.
+    let Some(&origin) = polygon.first() else { return 0.0 };
+    edges(polygon).map(|(a, b)| (a - origin).perp_dot(b - origin)).sum::<f64>() * 0.5
+}
+
+/// The centre of mass of the area; the mean of the vertices when there is no area.
+#[must_use]
+pub fn centroid(polygon: &[DVec2]) -> DVec2 {
+    let Some(&origin) = polygon.first() else { return DVec2::ZERO };
+    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
+    for (a, b) in edges(polygon) {
+        let (a, b) = (a - origin, b - origin);
+        let doubled = a.perp_dot(b);
+        area += doubled;
+        sum += (a + b) * doubled;
+    }
+    if area.abs() < 1e-300 {
+        return polygon.iter().sum::<DVec2>() / polygon.len() as f64;
+    }
+    origin + sum / (3.0 * area)
+}
+
+/// The edges, the last one back to the first vertex.
+pub fn edges(polygon: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+/// The length of the boundary.
+#[must_use]
+pub fn perimeter(polygon: &[DVec2]) -> f64 {
+    edges(polygon).map(|(a, b)| a.distance(b)).sum()
+}
+
+/// Whether `p` lies inside, by the even-odd rule. Points on the boundary may go either way.
+#[must_use]
+pub fn contains(polygon: &[DVec2], p: DVec2) -> bool {
+    edges(polygon).filter(|&(a, b)| crosses_ray(a, b, p)).count() % 2 == 1
+}
+
+/// Whether the edge a–b crosses the ray from `p` towards +x.
+pub(super) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
+    (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x
+}
+
+/// The point of the segment a–b nearest to `p`.
+#[must_use]
+pub fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> DVec2 {
+    let along = b - a;
+    let length2 = along.length_squared();
+    if length2 == 0.0 {
+        return a;
+    }
+    a + along * ((p - a).dot(along) / length2).clamp(0.0, 1.0)
+}
+
+/// Whether the segments a–b and c–d touch, ends included.
+#[must_use]
+pub fn segments_touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    let (d1, d2) = (cross(a, b, c), cross(a, b, d));
+    let (d3, d4) = (cross(c, d, a), cross(c, d, b));
+    if d1 * d2 < 0.0 && d3 * d4 < 0.0 {
+        return true;
+    }
+    let within = |a: DVec2, b: DVec2, p: DVec2| p.cmpge(a.min(b)).all() && p.cmple(a.max(b)).all();
+    (d1 == 0.0 && within(a, b, c))
+        || (d2 == 0.0 && within(a, b, d))
+        || (d3 == 0.0 && within(c, d, a))
+        || (d4 == 0.0 && within(c, d, b))
+}
+
+/// Where the outline first touches itself, neighbours at their shared vertex excepted; `None` when
+/// it is simple. Near-linear for outlines of even edges.
+#[must_use]
+pub fn self_crossing(polygon: &[DVec2]) -> Option<DVec2> {
+    let n = polygon.len();
+    let index = SegmentIndex::of_polygon(polygon);
+    (0..n).find_map(|i| {
+        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+        let hit = index.any_near(a, b, |j| {
+            if j == i {
+                return false;
+            }
+            let (c, d) = (polygon[j], polygon[(j + 1) % n]);
+            if j == (i + 1) % n {
+                // Neighbours share b; they overlap only when the second folds back on the first.
+                return cross(a, b, d) == 0.0 && (d - b).dot(a - b) > 0.0;
+            }
+            if i == (j + 1) % n {
+                return cross(c, d, b) == 0.0 && (b - a).dot(c - a) > 0.0;
+            }
+            segments_touch(a, b, c, d)
+        });
+        hit.then(|| (a + b) * 0.5)
+    })
+}
+
+/// Points along the boundary at equal steps of at most `step`, starting at vertex 0.
+#[must_use]
+pub fn resampled(polygon: &[DVec2], step: f64) -> Vec<DVec2> {
+    let total = perimeter(polygon);
+    let count = ((total / step).ceil() as usize).max(3);
+    let spacing = total / count as f64;
+    let mut points = Vec::with_capacity(count);
+    let (mut walked, mut next) = (0.0, 0.0);
+    for (a, b) in edges(polygon) {
+        let length = a.distance(b);
+        while points.len() < count && next < walked + length {
+            points.push(a.lerp(b, (next - walked) / length));
+            next = spacing * points.len() as f64;
+        }
+        walked += length;
+    }
+    points
+}
+
+/// The polygon without vertices that follow another within `least` (the last against the first
+/// too). Vertex 0 always stays.
+#[must_use]
+pub fn without_short_edges(polygon: &[DVec2], least: f64) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = Vec::with_capacity(polygon.len());
+    for &p in polygon {
+        if kept.last().is_none_or(|last| last.distance(p) >= least) {
+            kept.push(p);
+        }
+    }
+    while kept.len() > 1 && kept[0].distance(kept[kept.len() - 1]) < least {
+        kept.pop();
+    }
+    kept
+}
+
+/// Douglas–Peucker: a polygon through some of the vertices that stays within `tolerance` of the
+/// boundary. Vertices listed in `keep` stay. Quadratic in the worst case.
+#[must_use]
+pub fn simplified(polygon: &[DVec2], tolerance: f64, keep: &[usize]) -> Vec<usize> {
+    let n = polygon.len();
+    let mut anchors: Vec<usize> = keep.to_vec();
+    anchors.push(0);
+    let far = (0..n).max_by(|&i, &j| {
+        polygon[i].distance_squared(polygon[0]).total_cmp(&polygon[j].distance_squared(polygon[0]))
+    });
+    anchors.extend(far);
+    anchors.sort_unstable();
+    anchors.dedup();
+    let mut kept = vec![false; n];
+    let mut open: Vec<(usize, usize)> = Vec::new();
+    for (k, &start) in anchors.iter().enumerate() {
+        kept[start] = true;
+        open.push((start, anchors.get(k + 1).copied().unwrap_or(anchors[0] + n)));
+    }
+    while let Some((start, end)) = open.pop() {
+        let (a, b) = (polygon[start], polygon[end % n]);
+        let worst = (start + 1..end)
+            .map(|i| (polygon[i % n].distance(nearest_on_segment(a, b, polygon[i % n])), i))
+            .max_by(|x, y| x.0.total_cmp(&y.0));
+        if let Some((distance, i)) = worst
+            && distance > tolerance
+        {
+            kept[i % n] = true;
+            open.push((start, i));
+            open.push((i, end));
+        }
+    }
+    (0..n).filter(|&i| kept[i]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Vec<DVec2> {
+        [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(DVec2::from).to_vec()
+    }
+
+    #[test]
+    fn a_square_has_its_area_centroid_and_perimeter() {
+        assert_eq!(signed_area(&square()), 4.0);
+        assert_eq!(centroid(&square()), DVec2::ONE);
+        assert_eq!(perimeter(&square()), 8.0);
+        let clockwise: Vec<_> = square().into_iter().rev().collect();
+        assert_eq!(signed_area(&clockwise), -4.0);
+    }
+
+    #[test]
+    fn a_bow_tie_crosses_itself_and_a_square_does_not() {
+        let tie = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)].map(DVec2::from);
+        assert!(self_crossing(&tie).is_some());
+        assert_eq!(self_crossing(&square()), None);
+    }
+
+    #[test]
+    fn a_fold_back_on_itself_is_a_crossing() {
+        let spike = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (2.0, 1.0), (0.0, 2.0)].map(DVec2::from);
+        assert!(self_crossing(&spike).is_some());
+    }
+
+    #[test]
+    fn resampling_keeps_equal_steps_on_the_boundary() {
+        let points = resampled(&square(), 0.3);
+        assert_eq!(points.len(), 27);
+        assert!(points.iter().all(|p| (p.x * (2.0 - p.x) * p.y * (2.0 - p.y)).abs() < 1e-12));
+    }
+
+    #[test]
+    fn simplifying_keeps_corners_and_drops_the_rest() {
+        let dense = resampled(&square(), 0.25);
+        let kept = simplified(&dense, 1e-9, &[]);
+        assert_eq!(kept.len(), 4);
+    }
+
+    #[test]
+    fn short_edges_go_also_across_the_seam() {
+        let mut points = square();
+        points.push(DVec2::new(0.0, 1e-6));
+        points.insert(1, DVec2::new(1e-6, 0.0));
+        assert_eq!(without_short_edges(&points, 1e-3), square());
+    }
+}

@@ -1,0 +1,219 @@
+//! A static index over line segments: which lie near another segment, what is inside a polygon,
+//! how far the nearest one is.
+//!
+//! Segments are listed in every cell of a uniform grid that their box touches. Cells are about one
+//! mean segment wide, so a query near few segments looks at few.
+
+use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
+use super::{DVec2, Rect};
+
+/// An index over segments a–b.
+#[derive(Debug, Clone)]
+pub struct SegmentIndex {
+    segments: Vec<(DVec2, DVec2)>,
+    min: DVec2,
+    per_cell: f64,
+    columns: usize,
+    rows: usize,
+    /// Where the list of each cell starts in `items`.
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+/// More cells than this buy nothing and cost memory.
+const MAX_CELLS_A_SIDE: f64 = 512.0;
+
+impl SegmentIndex {
+    /// Over the edges of a closed polygon; segment `i` runs from vertex `i` to the next.
+    #[must_use]
+    pub fn of_polygon(polygon: &[DVec2]) -> Self {
+        Self::new(super::polygon::edges(polygon).collect())
+    }
+
+    /// Over any segments.
+    #[must_use]
+    pub fn new(segments: Vec<(DVec2, DVec2)>) -> Self {
+        let bounds = Rect::around(segments.iter().flat_map(|&(a, b)| [a, b]));
+        let size = bounds.size().max(DVec2::ZERO);
+        let mean = segments.iter().map(|(a, b)| a.distance(*b)).sum::<f64>()
+            / segments.len().max(1) as f64;
+        let widest = size.max_element();
+        let cell = mean.max(widest / MAX_CELLS_A_SIDE).max(f64::MIN_POSITIVE);
+        let count = |length: f64| ((length / cell) as usize + 1).min(MAX_CELLS_A_SIDE as usize + 1);
+        let (columns, rows) = (count(size.x), count(size.y));
+        let min = if segments.is_empty() { DVec2::ZERO } else { bounds.min };
+        let mut index = Self {
+            segments,
+            min,
+            per_cell: 1.0 / cell,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            items: Vec::new(),
+        };
+        index.fill();
+        index
+    }
+
+    fn fill(&mut self) {
+        let boxes: Vec<_> =
+            self.segments.iter().map(|&(a, b)| self.cells(a.min(b), a.max(b))).collect();
+        let mut counts = vec![0u32; self.columns * self.rows + 1];
+        for &(x0, y0, x1, y1) in &boxes {
+            for y in y0..=y1 {
+                for x in x0..=x1 {
+                    counts[y * self.columns + x + 1] += 1;
+                }
+            }
+        }
+        for i in 1..counts.len() {
+            counts[i] += counts[i - 1];
+        }
+        self.starts.clone_from(&counts);
+        self.items = vec![0; counts[counts.len() - 1] as usize];
+        for (i, &(x0, y0, x1, y1)) in boxes.iter().enumerate() {
+            for y in y0..=y1 {
+                for x in x0..=x1 {
+                    let slot = &mut counts[y * self.columns + x];
+                    self.items[*slot as usize] = i as u32;
+                    *slot += 1;
+                }
+            }
+        }
+    }
+
+    /// The cells that a box touches, clamped to the grid.
+    fn cells(&self, min: DVec2, max: DVec2) -> (usize, usize, usize, usize) {
+        let low = ((min - self.min) * self.per_cell).max(DVec2::ZERO);
+        let high = ((max - self.min) * self.per_cell).max(DVec2::ZERO);
+        (
+            (low.x as usize).min(self.columns - 1),
+            (low.y as usize).min(self.rows - 1),
+            (high.x as usize).min(self.columns - 1),
+            (high.y as usize).min(self.rows - 1),
+        )
+    }
+
+    fn cell(&self, x: usize, y: usize) -> &[u32] {
+        let i = y * self.columns + x;
+        &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
+    /// Whether `test` holds for a segment whose cells the box of a–b touches. `test` gets indices,
+    /// some more than once.
+    pub fn any_near(&self, a: DVec2, b: DVec2, mut test: impl FnMut(usize) -> bool) -> bool {
+        let (x0, y0, x1, y1) = self.cells(a.min(b), a.max(b));
+        (y0..=y1).any(|y| (x0..=x1).any(|x| self.cell(x, y).iter().any(|&i| test(i as usize))))
+    }
+
+    /// Whether the segment a–b touches any of these.
+    #[must_use]
+    pub fn touches(&self, a: DVec2, b: DVec2) -> bool {
+        self.any_near(a, b, |i| {
+            let (c, d) = self.segments[i];
+            segments_touch(a, b, c, d)
+        })
+    }
+
+    /// Whether `p` lies inside the closed polygon whose edges these are (even-odd rule).
+    #[must_use]
+    pub fn contains(&self, p: DVec2) -> bool {
+        let cell = (p - self.min) * self.per_cell;
+        if cell.y < 0.0 || cell.y >= self.rows as f64 || cell.x >= self.columns as f64 {
+            return false;
+        }
+        let (row, first) = (cell.y as usize, cell.x.max(0.0) as usize);
+        let mut inside = false;
+        for x in first..self.columns {
+            for &i in self.cell(x, row) {
+                let (a, b) = self.segments[i as usize];
+                // A segment stands in several cells of the row: count it in the first one only.
+                let low = (a.x.min(b.x) - self.min.x) * self.per_cell;
+                let home = (low.max(0.0) as usize).clamp(first, self.columns - 1);
+                if home == x && crosses_ray(a, b, p) {
+                    inside = !inside;
+                }
+            }
+        }
+        inside
+    }
+
+    /// The squared distance from `p` to the nearest segment and that segment, when within `reach`.
+    #[must_use]
+    pub fn nearest(&self, p: DVec2, reach: f64) -> Option<(f64, usize)> {
+        let mut best = (reach * reach, usize::MAX);
+        // Rings of cells outwards; stop once a whole ring is farther than the best.
+        let centre = ((p - self.min) * self.per_cell)
+            .clamp(DVec2::ZERO, DVec2::new(self.columns as f64 - 1.0, self.rows as f64 - 1.0));
+        let (cx, cy) = (centre.x as isize, centre.y as isize);
+        let outside = p.distance(p.clamp(
+            self.min,
+            self.min + DVec2::new(self.columns as f64, self.rows as f64) / self.per_cell,
+        ));
+        for ring in 0..self.columns.max(self.rows) as isize {
+            let clear = ((ring - 1).max(0) as f64 / self.per_cell).max(outside);
+            if clear * clear > best.0 {
+                break;
+            }
+            let mut visit = |x: isize, y: isize| {
+                if x < 0 || y < 0 || x >= self.columns as isize || y >= self.rows as isize {
+                    return;
+                }
+                for &i in self.cell(x as usize, y as usize) {
+                    let (a, b) = self.segments[i as usize];
+                    let d2 = p.distance_squared(nearest_on_segment(a, b, p));
+                    if (d2, i as usize) < best {
+                        best = (d2, i as usize);
+                    }
+                }
+            };
+            for x in cx - ring..=cx + ring {
+                visit(x, cy - ring);
+                if ring > 0 {
+                    visit(x, cy + ring);
+                }
+            }
+            for y in cy - ring + 1..cy + ring {
+                visit(cx - ring, y);
+                visit(cx + ring, y);
+            }
+        }
+        (best.1 != usize::MAX).then_some(best)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polygon;
+    use crate::seed::{Seed, Stage};
+
+    fn star(points: usize) -> Vec<DVec2> {
+        (0..points)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * i as f64 / points as f64;
+                let radius = if i % 2 == 0 { 10.0 } else { 4.0 };
+                DVec2::new(angle.cos(), angle.sin()) * radius
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_index_agrees_with_looking_at_every_edge() {
+        let outline = star(34);
+        let index = SegmentIndex::of_polygon(&outline);
+        let mut rng = Seed(5).stream(Stage::Tissue);
+        for _ in 0..2000 {
+            let p = DVec2::new(rng.between(-12.0, 12.0), rng.between(-12.0, 12.0));
+            let q = p + DVec2::new(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0));
+            assert_eq!(index.contains(p), polygon::contains(&outline, p), "{p}");
+            let touches = polygon::edges(&outline).any(|(a, b)| segments_touch(a, b, p, q));
+            assert_eq!(index.touches(p, q), touches);
+            let nearest = polygon::edges(&outline)
+                .map(|(a, b)| p.distance_squared(nearest_on_segment(a, b, p)))
+                .fold(f64::INFINITY, f64::min);
+            let (found, _) = index.nearest(p, 100.0).expect("something is nearest");
+            assert!((found - nearest).abs() < 1e-12);
+        }
+    }
+}

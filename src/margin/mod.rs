@@ -1,0 +1,271 @@
+//! The outline of the blade.
+//!
+//! [`build`] makes a [`Margin`] from a [`MarginSpec`]: a parametric leaf ([`parametric`]) or a
+//! polygon in millimetres. Drawings, photographs and foreign polygons become such a polygon first
+//! ([`sketch`], [`silhouette`], [`placement`]); none of them opens a file.
+
+pub mod parametric;
+pub mod placement;
+pub mod silhouette;
+pub mod sketch;
+
+use glam::DVec2;
+
+use crate::geometry::{Rect, polygon};
+use crate::parameter::{parameters, words};
+use parametric::SideSpec;
+
+words! {
+    /// Where the outline comes from.
+    pub enum MarginKind {
+        /// Both sides by landmarks and tangents.
+        Unilobed = "unilobed",
+        /// A polygon in millimetres.
+        Polygon = "polygon",
+    }
+}
+
+parameters! {
+    /// The outline of the blade.
+    pub struct MarginSpec {
+        /// Where the outline comes from: `unilobed` (landmarks, Garg 2011) or `polygon`.
+        kind: choice(MarginKind, MarginKind::Unilobed),
+        /// Length of the blade from base to apex, without petiole.
+        length_mm: number(80.0, 1.0..=2000.0, "mm"),
+        /// The right side of a unilobed leaf, seen from the front.
+        right: group(SideSpec, SideSpec::default()),
+        /// The left side of a unilobed leaf, seen from the front.
+        left: group(SideSpec, SideSpec::default()),
+        /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y.
+        polygon_mm: points(),
+        /// Slits inside the polygon, as open lines.
+        cuts_mm: lines(),
+    }
+}
+
+/// The outline of a leaf blade, in leaf space (mm).
+///
+/// # Guarantees
+///
+/// - At least 8 vertices, all finite; neighbours at least [`Margin::MIN_EDGE_MM`] apart.
+/// - Simple: no two edges touch, except neighbours at their shared vertex.
+/// - Anticlockwise; the first vertex is the base, at the origin, and is not repeated at the end.
+/// - The apex is a vertex on the +y axis.
+/// - Cuts (slits inside the blade) are finite lines of two points or more, inside the outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Margin {
+    outline: Vec<DVec2>,
+    apex: usize,
+    cuts: Vec<Vec<DVec2>>,
+}
+
+/// Why a margin could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MarginError {
+    /// A coordinate is NaN or infinite.
+    #[error("the outline has a coordinate that is not a finite number, at point {index}")]
+    NotFinite {
+        /// Index of the point.
+        index: usize,
+    },
+    /// Too little left to be a leaf.
+    #[error("the outline has {count} distinct points; a leaf needs at least {least}")]
+    TooFewPoints {
+        /// Distinct points.
+        count: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// The outline encloses (nearly) nothing.
+    #[error("the outline encloses no area ({area_mm2:.3e} mm²)")]
+    NoArea {
+        /// Its area (mm²).
+        area_mm2: f64,
+    },
+    /// The outline crosses or touches itself.
+    #[error("the outline crosses itself near ({x:.2}, {y:.2}) mm; {hint}")]
+    SelfCrossing {
+        /// Where, x (mm).
+        x: f64,
+        /// Where, y (mm).
+        y: f64,
+        /// What to change.
+        hint: &'static str,
+    },
+    /// The base is not the first vertex, or the apex not on the axis.
+    #[error("the outline must start at the base (0, 0) and have its apex on the +y axis")]
+    NotPlaced,
+    /// A cut leaves the blade.
+    #[error("a slit leaves the blade near ({x:.2}, {y:.2}) mm")]
+    CutOutside {
+        /// Where, x (mm).
+        x: f64,
+        /// Where, y (mm).
+        y: f64,
+    },
+    /// The landmarks of one side contradict each other.
+    #[error("{key} = {value} {problem}")]
+    Landmark {
+        /// The key.
+        key: String,
+        /// Its value.
+        value: f64,
+        /// What is wrong with it and what to change.
+        problem: String,
+    },
+    /// A picture holds no usable outline.
+    #[error("{0}")]
+    Picture(String),
+    /// The place given for the petiole is unusable.
+    #[error("the root ({x}, {y}) {problem}")]
+    Root {
+        /// As given, x.
+        x: f64,
+        /// As given, y.
+        y: f64,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+impl Margin {
+    /// Neighbouring vertices are at least this far apart (mm): far below a texel (200 mm over 8192
+    /// is 0.024), so nothing visible goes; far above rounding, so tangents stay defined.
+    pub const MIN_EDGE_MM: f64 = 1e-3;
+
+    /// Fewer vertices than this make no leaf.
+    pub const MIN_VERTICES: usize = 8;
+
+    /// A margin from an outline that starts at the base and has its apex at vertex `apex`; either
+    /// winding. Merges vertices that stand too close and refuses what it cannot guarantee.
+    ///
+    /// # Errors
+    ///
+    /// The [`MarginError`] of the guarantee that would be broken; `hint` says what the caller's user
+    /// can change about a self-crossing.
+    pub fn new(
+        outline: Vec<DVec2>,
+        apex: usize,
+        cuts: Vec<Vec<DVec2>>,
+        hint: &'static str,
+    ) -> Result<Self, MarginError> {
+        if let Some(index) = outline.iter().position(|p| !p.is_finite()) {
+            return Err(MarginError::NotFinite { index });
+        }
+        let tip = outline.get(apex).copied().unwrap_or(DVec2::ZERO);
+        let at_base = outline.first().is_some_and(|p| p.length() < 1e-9);
+        if !at_base || tip.x.abs() > 1e-9 * tip.y.abs().max(1.0) || tip.y <= 0.0 {
+            return Err(MarginError::NotPlaced);
+        }
+        // Keep the apex: drop vertices that crowd it, never itself.
+        let crowded = |p: &DVec2| *p != tip && p.distance(tip) < Self::MIN_EDGE_MM;
+        let outline: Vec<DVec2> = outline.into_iter().filter(|p| !crowded(p)).collect();
+        let mut outline = polygon::without_short_edges(&outline, Self::MIN_EDGE_MM);
+        if outline.len() < Self::MIN_VERTICES {
+            return Err(MarginError::TooFewPoints {
+                count: outline.len(),
+                least: Self::MIN_VERTICES,
+            });
+        }
+        let area = polygon::signed_area(&outline);
+        if area.abs() < 1e-4 * tip.y * tip.y {
+            return Err(MarginError::NoArea { area_mm2: area });
+        }
+        if area < 0.0 {
+            outline[1..].reverse();
+        }
+        outline[0] = DVec2::ZERO;
+        if let Some(at) = polygon::self_crossing(&outline) {
+            return Err(MarginError::SelfCrossing { x: at.x, y: at.y, hint });
+        }
+        let apex = outline.iter().position(|p| *p == tip).ok_or(MarginError::NotPlaced)?;
+        outline[apex].x = 0.0;
+        let outside = |p: &&DVec2| !p.is_finite() || !polygon::contains(&outline, **p);
+        let cuts: Vec<Vec<DVec2>> = cuts.into_iter().filter(|line| line.len() > 1).collect();
+        if let Some(p) = cuts.iter().flatten().find(outside) {
+            return Err(MarginError::CutOutside { x: p.x, y: p.y });
+        }
+        Ok(Self { outline, apex, cuts })
+    }
+
+    /// The vertices, anticlockwise from the base.
+    #[must_use]
+    pub fn outline(&self) -> &[DVec2] {
+        &self.outline
+    }
+
+    /// The tip of the blade.
+    #[must_use]
+    pub fn apex(&self) -> DVec2 {
+        self.outline[self.apex]
+    }
+
+    /// Index of the apex in the outline. Vertices before it are the right side, after it the left.
+    #[must_use]
+    pub fn apex_index(&self) -> usize {
+        self.apex
+    }
+
+    /// Slits drawn inside the blade.
+    #[must_use]
+    pub fn cuts(&self) -> &[Vec<DVec2>] {
+        &self.cuts
+    }
+
+    /// From base to apex (mm).
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        self.apex().y
+    }
+
+    /// Area of the blade (mm²).
+    #[must_use]
+    pub fn area_mm2(&self) -> f64 {
+        polygon::signed_area(&self.outline)
+    }
+
+    /// The box around the blade.
+    #[must_use]
+    pub fn bounds(&self) -> Rect {
+        Rect::around(self.outline.iter().copied())
+    }
+
+    /// The first guarantee that does not hold, in words; `None` when all do. For tests.
+    #[must_use]
+    pub fn check(&self) -> Option<String> {
+        let rebuilt = Self::new(self.outline.clone(), self.apex, self.cuts.clone(), "");
+        match rebuilt {
+            Err(error) => Some(error.to_string()),
+            Ok(same) if same != *self => Some("rebuilding the margin changes it".into()),
+            Ok(_) => None,
+        }
+    }
+}
+
+/// The margin of a leaf.
+///
+/// # Errors
+///
+/// [`MarginError`] names the key, the value and what to change.
+pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
+    match spec.kind {
+        MarginKind::Unilobed => parametric::unilobed(spec),
+        MarginKind::Polygon => {
+            let vector = |p: &[f64; 2]| DVec2::from(*p);
+            let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
+            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
+            let apex = apex_vertex(&outline);
+            Margin::new(outline, apex, cuts, "mend margin.polygon_mm there")
+        }
+    }
+}
+
+/// The vertex on the +y axis that lies highest: where a placed polygon has its apex.
+fn apex_vertex(outline: &[DVec2]) -> usize {
+    let on_axis = |p: &DVec2| p.x.abs() <= 1e-9 * p.y.abs().max(1.0);
+    (0..outline.len())
+        .filter(|&i| on_axis(&outline[i]))
+        .max_by(|&i, &j| outline[i].y.total_cmp(&outline[j].y))
+        .unwrap_or(0)
+}

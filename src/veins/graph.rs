@@ -1,0 +1,141 @@
+//! The vein pattern as a graph: a forest of nodes that grow from the petiole, and joins between
+//! branches that met.
+
+use glam::DVec2;
+
+use crate::parameter::words;
+
+/// A node, by its place in the graph. Parents come before children.
+pub type NodeId = u32;
+
+words! {
+    /// What part of the pattern a node belongs to.
+    pub enum VeinKind {
+        /// The midrib and other veins of the first order.
+        Primary = "primary",
+        /// Branches of the primary veins.
+        Secondary = "secondary",
+        /// Every finer vein.
+        Minor = "minor",
+    }
+}
+
+/// Nodes and edges of a vein pattern, in leaf space (mm).
+///
+/// # Guarantees
+///
+/// - A parent comes before its children, so the parent edges are a forest, whose roots lie at the
+///   petiole.
+/// - No two nodes at one position.
+/// - Joins name two different existing nodes, neither the parent of the other.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct VeinGraph {
+    positions: Vec<DVec2>,
+    /// The parent of each node; a root is its own parent.
+    parents: Vec<NodeId>,
+    joins: Vec<(NodeId, NodeId)>,
+}
+
+impl VeinGraph {
+    /// A graph without nodes.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a root at the petiole.
+    pub fn add_root(&mut self, position: DVec2) -> NodeId {
+        let id = self.positions.len() as NodeId;
+        self.positions.push(position);
+        self.parents.push(id);
+        id
+    }
+
+    /// Adds a node that grows out of `parent`. The caller keeps positions distinct.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such parent.
+    pub fn sprout(&mut self, parent: NodeId, position: DVec2) -> NodeId {
+        assert!((parent as usize) < self.positions.len(), "a vein grows out of an existing node");
+        let id = self.positions.len() as NodeId;
+        self.positions.push(position);
+        self.parents.push(parent);
+        id
+    }
+
+    /// Records that the veins at `a` and `b` have met.
+    pub fn join(&mut self, a: NodeId, b: NodeId) {
+        self.joins.push((a, b));
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there are no nodes.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Where the nodes are (mm), by id.
+    #[must_use]
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
+    /// The parent of a node; `None` for a root.
+    #[must_use]
+    pub fn parent(&self, node: NodeId) -> Option<NodeId> {
+        let parent = self.parents[node as usize];
+        (parent != node).then_some(parent)
+    }
+
+    /// Loop-closing edges.
+    #[must_use]
+    pub fn joins(&self) -> &[(NodeId, NodeId)] {
+        &self.joins
+    }
+
+    /// Nodes that are no root, each with its parent, parents first.
+    pub fn edges(&self) -> impl Iterator<Item = (NodeId, NodeId)> + '_ {
+        (0..self.len() as NodeId).filter_map(|node| Some((self.parent(node)?, node)))
+    }
+
+    /// How many children each node has, by id.
+    #[must_use]
+    pub fn child_counts(&self) -> Vec<u32> {
+        let mut counts = vec![0; self.len()];
+        for (parent, _) in self.edges() {
+            counts[parent as usize] += 1;
+        }
+        counts
+    }
+
+    /// The first guarantee that does not hold, in words; `None` when all do. For tests.
+    #[must_use]
+    pub fn check(&self) -> Option<String> {
+        if let Some(i) = (0..self.len()).find(|&i| self.parents[i] as usize > i) {
+            return Some(format!("node {i} comes before its parent {}", self.parents[i]));
+        }
+        if let Some(p) = self.positions.iter().find(|p| !p.is_finite()) {
+            return Some(format!("a node at {p}"));
+        }
+        let mut sorted: Vec<[u64; 2]> =
+            self.positions.iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
+        sorted.sort_unstable();
+        if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Some("two nodes at one position".into());
+        }
+        let n = self.len() as NodeId;
+        self.joins
+            .iter()
+            .find(|&&(a, b)| {
+                a == b || a >= n || b >= n || self.parent(a) == Some(b) || self.parent(b) == Some(a)
+            })
+            .map(|join| format!("a join {join:?} that closes no loop"))
+    }
+}

@@ -69,7 +69,8 @@ pub(super) fn document_of(spec: &LeafSpec, seed: u64) -> Document {
     let entries: BTreeMap<String, Entry> = parameters()
         .iter()
         .filter_map(|parameter| {
-            let value = from_plain(&tree, parameter).or_else(|| value::default_of(&parameter.key))?;
+            let value =
+                from_plain(&tree, parameter).or_else(|| value::default_of(&parameter.key))?;
             Some((parameter.key.clone(), Entry { value, origin: "leaf".into() }))
         })
         .collect();

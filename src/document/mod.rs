@@ -193,14 +193,19 @@ mod tests {
     #[test]
     fn a_percent_is_a_range_around_its_middle() {
         let document = Document::parse("[margin]\nlength_mm = \"80 ± 25%\"\n", "").unwrap();
-        assert_eq!(document.value("margin.length_mm"), Some(Value::Number { low: 60.0, high: 100.0 }));
+        assert_eq!(
+            document.value("margin.length_mm"),
+            Some(Value::Number { low: 60.0, high: 100.0 })
+        );
     }
 
     #[test]
     fn drawing_stays_in_the_range_and_setting_one_key_leaves_the_others() {
-        let mut document =
-            Document::parse("[margin]\nlength_mm = [60, 100]\n[growth]\ntotal_steps = [10, 12]\n", "")
-                .unwrap();
+        let mut document = Document::parse(
+            "[margin]\nlength_mm = [60, 100]\n[growth]\ntotal_steps = [10, 12]\n",
+            "",
+        )
+        .unwrap();
         let mut seen = std::collections::BTreeSet::new();
         for seed in 0..200 {
             let spec = document.resolve(Seed(seed)).unwrap();
@@ -225,7 +230,10 @@ mod tests {
         assert_eq!(again.seed, Some(9));
         assert_eq!(again.resolve(Seed(9)).unwrap(), spec);
         let commented = Document::of_spec(&spec, 9).to_toml(Comments::Full);
-        assert_eq!(Document::parse(&commented, "leaf.toml").unwrap().resolve(Seed(1)).unwrap(), spec);
+        assert_eq!(
+            Document::parse(&commented, "leaf.toml").unwrap().resolve(Seed(1)).unwrap(),
+            spec
+        );
     }
 
     #[test]

@@ -58,8 +58,10 @@ impl MapKind {
                  alpha 0"
             }
             Self::Opacity => "coverage: 0 outside, 1 inside; grey and alpha are equal",
-            Self::Height => "height: 0 lowest, 65535 highest, apart by height_range_mm; plain \
-                             blade in the middle",
+            Self::Height => {
+                "height: 0 lowest, 65535 highest, apart by height_range_mm; plain \
+                             blade in the middle"
+            }
             Self::Normal => "normal in tangent space, OpenGL (+y up the picture)",
             Self::Bump => "height in the red channel, plain blade at 128",
         }

@@ -81,7 +81,8 @@ struct Staged {
 impl Staged {
     fn add(&mut self, path: &Path, content: &[u8]) -> Result<(), Error> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        fs::create_dir_all(folder).map_err(|source| Error::write(folder, blocked(folder, source)))?;
+        fs::create_dir_all(folder)
+            .map_err(|source| Error::write(folder, blocked(folder, source)))?;
         let (mut file, temporary) = create_temporary(folder)?;
         self.files.push((temporary, path.to_owned()));
         file.write_all(content)

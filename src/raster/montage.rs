@@ -36,8 +36,8 @@ const FAINT_INK: Rgba = [104, 108, 100, 255];
 pub fn sheet(title: &str, panels: &[Panel], layout: Layout) -> Grid<Rgba> {
     let side = layout.panel_px.max(1);
     // Letters follow the panels, but never too small to read.
-    let type_size = (side as f64 / 18.0).clamp(13.0, 40.0).round();
-    let note_size = (type_size * 0.8).round();
+    let type_size = (side as f64 / 18.0).clamp(15.0, 40.0).round();
+    let note_size = (type_size * 0.87).round();
     let gap = (1.2 * type_size) as usize;
     let columns = match layout.columns {
         0 => (1..).find(|n| n * n >= panels.len()).unwrap_or(1),

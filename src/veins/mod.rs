@@ -65,6 +65,23 @@ pub struct Venation {
 }
 
 impl Venation {
+    /// A graph whose nodes have these radii and orders.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one radius and one order for each node.
+    #[must_use]
+    pub fn new(
+        graph: VeinGraph,
+        radii: Vec<f64>,
+        orders: Vec<u8>,
+        unreached_sources: usize,
+    ) -> Self {
+        assert_eq!(radii.len(), graph.len(), "a radius for every node");
+        assert_eq!(orders.len(), graph.len(), "an order for every node");
+        Self { graph, radii, orders, unreached_sources }
+    }
+
     /// The nodes and edges.
     #[must_use]
     pub fn graph(&self) -> &VeinGraph {

@@ -65,6 +65,23 @@ pub struct Venation {
 }
 
 impl Venation {
+    /// A pattern from its parts.
+    ///
+    /// # Panics
+    ///
+    /// If there is not one radius and one order for each node.
+    #[must_use]
+    pub fn new(
+        graph: VeinGraph,
+        radii: Vec<f64>,
+        orders: Vec<u8>,
+        unreached_sources: usize,
+    ) -> Self {
+        assert_eq!(graph.len(), radii.len(), "every node has a radius");
+        assert_eq!(graph.len(), orders.len(), "every node has an order");
+        Self { graph, radii, orders, unreached_sources }
+    }
+
     /// The nodes and edges.
     #[must_use]
     pub fn graph(&self) -> &VeinGraph {

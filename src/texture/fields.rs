@@ -1,1 +1,110 @@
-//! (to be written)
+//! What the painters ask of a place on the blade: the veins across it, and the guide beneath it.
+//!
+//! Veins are drawn at full resolution, band by band, from tapered capsules, each within its own
+//! box. What varies slowly (distance to the margin, to the larger veins, the reach of the colour
+//! schemes, broad mottling) is computed on a coarser [`Guide`] and read in between.
+
+use std::ops::Range;
+
+use glam::Vec2;
+
+use crate::raster::coverage::{Capsule, stroke_share};
+use crate::units::TextureFrame;
+use crate::veins::Venation;
+
+pub(super) use super::guide::{Guide, Place};
+
+/// A groove reaches this many radii from the axis of its vein.
+const GROOVE_RADII: f32 = 2.6;
+
+/// The edge of a vein is soft over this share of its radius on either side of the outline: veins
+/// are tissue, not wires.
+const SOFT_EDGE: f32 = 0.3;
+
+/// The veins of a leaf as strokes on its texture (pixels).
+#[derive(Debug)]
+pub(super) struct Strokes {
+    capsules: Vec<Capsule>,
+    pixels_per_mm: f32,
+}
+
+/// What the veins are at one texel.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct VeinAt {
+    /// How much of the texel is vein (0–1).
+    pub cover: f32,
+    /// Radius of that vein (mm).
+    pub radius: f32,
+    /// Height of a round vein over the texel (mm).
+    pub dome: f32,
+    /// Depth of a wide smooth groove along the veins (mm).
+    pub groove: f32,
+}
+
+impl Strokes {
+    pub(super) fn new(venation: &Venation, frame: &TextureFrame, size: usize) -> Self {
+        let pixels_per_mm = frame.pixels_per_mm(size);
+        let at = |node: u32| {
+            frame.pixel_from_leaf(venation.graph().positions()[node as usize], size).as_vec2()
+        };
+        let radius = |node: u32| venation.radii()[node as usize] * pixels_per_mm;
+        let grown = venation.graph().edges().map(|(parent, child)| Capsule {
+            a: at(parent),
+            b: at(child),
+            radius_a: radius(parent).min(radius(child) * BRANCH_FLARE) as f32,
+            radius_b: radius(child) as f32,
+        });
+        let joined = venation.graph().joins().iter().map(|&(a, b)| {
+            let thinner = radius(a).min(radius(b)) as f32;
+            Capsule { a: at(a), b: at(b), radius_a: thinner, radius_b: thinner }
+        });
+        Self { capsules: grown.chain(joined).collect(), pixels_per_mm: pixels_per_mm as f32 }
+    }
+
+    /// The veins over some rows of the texture, row by row.
+    pub(super) fn rows(&self, width: usize, rows: Range<usize>) -> Vec<VeinAt> {
+        let mut texels = vec![VeinAt::default(); width * rows.len()];
+        let mm = 1.0 / self.pixels_per_mm;
+        for capsule in &self.capsules {
+            let reach = (GROOVE_RADII * capsule.widest()).max(capsule.widest() + 1.0);
+            let [columns, lines] = capsule.pixels(reach, width, rows.clone());
+            for y in lines {
+                let row = &mut texels[(y - rows.start) * width..][..width];
+                for x in columns.clone() {
+                    let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                    row[x].add(capsule, centre, mm);
+                }
+            }
+        }
+        texels
+    }
+}
+
+/// A branch widens towards its parent up to so many times its own radius: a fillet. The parent's
+/// full radius would make a thorn of every fine branch on the midrib.
+pub(super) const BRANCH_FLARE: f64 = 1.3;
+
+impl VeinAt {
+    #[inline]
+    fn add(&mut self, capsule: &Capsule, centre: Vec2, mm: f32) {
+        let (distance2, t) = capsule.nearest(centre);
+        let radius = capsule.radius(t);
+        let radius2 = radius * radius;
+        let wide = 1.0 - distance2 / (GROOVE_RADII * GROOVE_RADII * radius2);
+        if wide > 0.0 {
+            self.groove = self.groove.max(wide * wide * radius * mm);
+        }
+        let half = (SOFT_EDGE * radius).max(0.5);
+        let outside = radius + half;
+        if distance2 >= outside * outside {
+            return;
+        }
+        let cover = stroke_share(distance2.sqrt(), radius, half);
+        if cover > self.cover || (cover == self.cover && radius * mm > self.radius) {
+            (self.cover, self.radius) = (cover, radius * mm);
+        }
+        if distance2 < radius2 {
+            self.dome = self.dome.max((radius2 - distance2).sqrt() * mm);
+        }
+    }
+}

@@ -1,14 +1,20 @@
 //! Images of the blade: colour, coverage, height and normals of both sides.
+//!
+//! [`paint`] lays the leaf out on its texture, paints both sides band by band as seen from the
+//! front, spreads them over the empty texels, and mirrors the back.
 
-pub mod fields;
+mod dilation;
+mod fields;
+mod guide;
 pub mod normals;
 pub mod petiole;
 pub mod pigment;
 pub mod relief;
-pub mod tissue;
+mod scene;
+mod tissue;
 
 use crate::margin::Margin;
-use crate::observer::Observer;
+use crate::observer::{Observer, Progress};
 use crate::parameter::parameters;
 use crate::raster::Grid;
 use crate::seed::Seed;
@@ -17,6 +23,7 @@ use crate::veins::Venation;
 use petiole::PetioleSpec;
 use pigment::ColourSpec;
 use relief::ReliefSpec;
+use scene::Scene;
 
 parameters! {
     /// Size and place of the textures.
@@ -39,27 +46,61 @@ pub struct Paint<'a> {
     pub colour: &'a ColourSpec,
     /// Heights and surface.
     pub relief: &'a ReliefSpec,
+    /// How many speckles are thrown when `colour.speckle_count` is 0: a tenth of the auxin spawn
+    /// rate (Foster, appendix B.3).
+    pub default_speckles: u64,
 }
 
-/// Paints both sides of a leaf.
+/// The limits of `texture.size_px`.
+const SIZES_PX: std::ops::RangeInclusive<u64> = 16..=16_384;
+
+/// Paints both sides of a leaf. The same bytes on any number of threads.
 ///
 /// # Errors
 ///
 /// [`TextureError`] when a map would not fit.
 pub fn paint(
-    _paint: &Paint<'_>,
-    _margin: &Margin,
-    _venation: &Venation,
-    _seed: Seed,
-    _observer: &mut dyn Observer,
+    paint: &Paint<'_>,
+    margin: &Margin,
+    venation: &Venation,
+    seed: Seed,
+    observer: &mut dyn Observer,
 ) -> Result<TextureSet, TextureError> {
-    unimplemented!()
+    let size = paint.texture.size_px;
+    if !SIZES_PX.contains(&size) {
+        return Err(TextureError::Size { size });
+    }
+    let mut report = |step| {
+        observer.report(Progress { stage: "painting", step, steps: 3, nodes: 0, sources: 0 });
+    };
+    report(0);
+    let scene = Scene::new(paint, margin, venation, seed);
+    report(1);
+    let [mut front, mut back] = scene.paint();
+    report(2);
+    dilation::spread([&mut front, &mut back]);
+    back.mirror();
+    report(3);
+    Ok(TextureSet {
+        frame: scene.frame(),
+        front,
+        back,
+        height_range_mm: scene.height_range_mm(),
+        petiole_end: scene.petiole_end(),
+    })
 }
 
 /// Why textures could not be painted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum TextureError {}
+pub enum TextureError {
+    /// The side is too short or too long.
+    #[error("texture.size_px = {size} must lie in 16..=16384")]
+    Size {
+        /// As given.
+        size: u64,
+    },
+}
 
 /// The maps of one side.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,4 +135,53 @@ pub struct TextureSet {
     pub height_range_mm: f64,
     /// Where the petiole leaves the stem, its far end (mm).
     pub petiole_end: glam::DVec2,
+}
+
+impl SideMaps {
+    /// The maps of no leaf at all: clear, flat.
+    fn empty(size: usize) -> Self {
+        Self {
+            base_colour: Grid::filled(size, size, [0; 4]),
+            height: Grid::filled(size, size, 1 << 15),
+            normal: Grid::filled(size, size, [128, 128, 255]),
+            bump: Grid::filled(size, size, 128),
+        }
+    }
+
+    /// Turns the pictures over, left to right.
+    fn mirror(&mut self) {
+        self.base_colour = self.base_colour.mirrored();
+        self.height = self.height.mirrored();
+        self.normal = self.normal.mirrored();
+        self.bump = self.bump.mirrored();
+    }
+}
+
+impl TextureSet {
+    /// The first guarantee that does not hold, in words; `None` when all do. For tests.
+    #[must_use]
+    pub fn check(&self) -> Option<String> {
+        let size = self.front.base_colour.width();
+        for (name, side) in [("front", &self.front), ("back", &self.back)] {
+            let sizes = [
+                (side.base_colour.width(), side.base_colour.height()),
+                (side.height.width(), side.height.height()),
+                (side.normal.width(), side.normal.height()),
+                (side.bump.width(), side.bump.height()),
+            ];
+            if sizes.iter().any(|&each| each != (size, size)) {
+                return Some(format!("the maps of the {name} are not all {size} squares"));
+            }
+            for (i, normal) in side.normal.values().iter().enumerate() {
+                let [x, y, z] = normal.map(|byte| f32::from(byte) / 127.5 - 1.0);
+                let length = (x * x + y * y + z * z).sqrt();
+                if normal[2] < 128 || (length - 1.0).abs() > 0.02 {
+                    return Some(format!("normal {normal:?} of the {name} at {i}"));
+                }
+            }
+        }
+        let back = self.back.base_colour.mirrored();
+        let mut pairs = self.front.base_colour.values().iter().zip(back.values());
+        pairs.any(|(a, b)| a[3] != b[3]).then(|| "the sides cover different texels".to_owned())
+    }
 }

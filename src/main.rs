@@ -1,1 +1,17 @@
-fn main() {}
+//! `venation`, the program: parse, run, exit code; nothing else.
+
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match cli::run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(message) = failure.message() {
+                eprintln!("venation: {message}");
+            }
+            ExitCode::from(failure.code())
+        }
+    }
+}

@@ -1,1 +1,75 @@
-//! (to be written)
+//! One leaf, all its stages in order: the only file that names them all.
+
+use crate::error::Error;
+use crate::growth::GrowingBlade;
+use crate::margin::{self, Margin};
+use crate::observer::Observer;
+use crate::seed::Seed;
+use crate::spec::LeafSpec;
+use crate::texture::{self, Paint, TextureSet};
+use crate::veins::{self, Venation};
+
+/// A blade with its veins, not painted yet.
+#[derive(Debug, Clone)]
+pub struct Grown {
+    /// The outline: the mature one, or a bud's when `growth.scale` is below 1.
+    pub margin: Margin,
+    /// The veins in it.
+    pub venation: Venation,
+}
+
+/// A finished leaf.
+#[derive(Debug, Clone)]
+pub struct Leaf {
+    /// What it was made from.
+    pub spec: LeafSpec,
+    /// The seed of everything random in it.
+    pub seed: Seed,
+    /// Its blade and veins.
+    pub grown: Grown,
+    /// Its pictures.
+    pub textures: TextureSet,
+}
+
+/// Builds the margin and grows the veins.
+///
+/// # Errors
+///
+/// The first stage's that fails.
+pub fn grow(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<Grown, Error> {
+    let margin = margin::build(&spec.margin)?;
+    let blade = GrowingBlade::new(margin, &spec.growth)?;
+    let venation = veins::grow(&spec.veins, &blade, seed, observer)?;
+    Ok(Grown { margin: blade.finished(), venation })
+}
+
+/// Paints a grown leaf.
+///
+/// # Errors
+///
+/// [`Error::Texture`].
+pub fn paint(
+    spec: &LeafSpec,
+    grown: &Grown,
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<TextureSet, Error> {
+    let paint = Paint {
+        texture: &spec.texture,
+        petiole: &spec.petiole,
+        colour: &spec.colour,
+        relief: &spec.relief,
+    };
+    Ok(texture::paint(&paint, &grown.margin, &grown.venation, seed, observer)?)
+}
+
+/// Makes a whole leaf.
+///
+/// # Errors
+///
+/// The first stage's that fails.
+pub fn generate(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<Leaf, Error> {
+    let grown = grow(spec, seed, observer)?;
+    let textures = paint(spec, &grown, seed, observer)?;
+    Ok(Leaf { spec: spec.clone(), seed, grown, textures })
+}

@@ -1,1 +1,68 @@
-//! (to be written)
+//! Leaves that come with `venation`: one TOML file each in `presets/`, embedded in the program.
+
+use crate::document::{Document, DocumentError};
+
+/// A leaf that comes with `venation`.
+#[derive(Debug, Clone, Copy)]
+pub struct Preset {
+    /// Latin name in kebab-case: `fagus-sylvatica`.
+    pub name: &'static str,
+    /// Common name: `beech`.
+    pub common: &'static str,
+    /// What it looks like, in a line.
+    pub about: &'static str,
+    /// Its TOML.
+    pub text: &'static str,
+}
+
+macro_rules! presets {
+    ($($name:literal, $common:literal, $about:literal;)*) => {
+        /// Every preset, by Latin name.
+        pub const PRESETS: &[Preset] = &[$(Preset {
+            name: $name,
+            common: $common,
+            about: $about,
+            text: include_str!(concat!("../presets/", $name, ".toml")),
+        }),*];
+    };
+}
+
+presets! {
+    "cornus-florida", "dogwood", "ovate, veins arching towards the tip; glaucous below";
+    "fagus-sylvatica", "beech", "oval, glossy green, nearly straight side veins";
+    "magnolia-grandiflora", "magnolia", "long elliptic, thick and glossy; rusty felt below";
+    "populus-tremula", "aspen", "nearly round, on a long thin petiole; autumn yellow";
+    "pyrus-communis", "pear", "ovate, dark and shiny, a dense fine net";
+    "salix-alba", "willow", "narrow lance, grey-green; silvery below";
+    "syringa-vulgaris", "lilac", "heart-shaped, soft mid green";
+    "tilia-cordata", "linden", "heart-shaped, oblique base, abrupt tip";
+}
+
+/// The preset of a Latin or common name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Preset> {
+    PRESETS.iter().find(|preset| preset.name == name || preset.common == name)
+}
+
+/// The preset's name nearest to a misspelt one.
+#[must_use]
+pub fn nearest(name: &str) -> Option<&'static str> {
+    PRESETS
+        .iter()
+        .flat_map(|preset| [preset.name, preset.common])
+        .map(|candidate| (strsim::normalized_damerau_levenshtein(name, candidate), candidate))
+        .filter(|(likeness, _)| *likeness > 0.5)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+impl Preset {
+    /// Its document.
+    ///
+    /// # Errors
+    ///
+    /// None for the presets that come with `venation`: a test reads them all.
+    pub fn document(&self) -> Result<Document, DocumentError> {
+        Document::parse(self.text, &format!("{}.toml", self.name))
+    }
+}

@@ -1,9 +1,101 @@
 //! The only library modules that read or write.
+//!
+//! Writing has two halves: [`encode_leaf`] turns a leaf into named bytes and touches no disk,
+//! [`write::write_files`] puts named bytes into a folder. [`file_names`] tells beforehand what a run
+//! will write.
 
 pub mod graph;
 pub mod image;
+mod leaf_files;
 pub mod manifest;
 pub mod obj;
 pub mod outline;
 pub mod svg;
 pub mod write;
+
+use std::path::{Path, PathBuf};
+
+use crate::parameter::words;
+pub use image::MapKind;
+pub use leaf_files::{LeafFiles, encode_leaf, file_names};
+
+/// The program and its version, as every file names its maker.
+pub const GENERATOR: &str = concat!("venation ", env!("CARGO_PKG_VERSION"));
+
+/// The resolved settings, from which the same leaf can be made again.
+pub const SPEC_FILE: &str = "leaf.toml";
+
+/// The list of all files; written last, so where it is, the run was completed.
+pub const MANIFEST_FILE: &str = "manifest.json";
+
+words! {
+    /// A form of the leaf other than pictures.
+    pub enum FormatKind {
+        /// A textured card.
+        Obj = "obj",
+        /// Outline and veins as vectors.
+        Svg = "svg",
+        /// The vein graph.
+        Json = "json",
+    }
+}
+
+impl FormatKind {
+    /// The formats that are written unless others are asked for.
+    pub const DEFAULT: &'static [Self] = &[Self::Obj];
+}
+
+/// Why files could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Files are already there and were not to be replaced.
+    #[error("{} already holds {}", folder.display(), listed(files))]
+    WouldOverwrite {
+        /// The folder.
+        folder: PathBuf,
+        /// The files in the way, relative to it.
+        files: Vec<String>,
+    },
+    /// The system refused.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// What was to be written.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+}
+
+impl Error {
+    fn write(path: &Path, source: std::io::Error) -> Self {
+        Self::Write { path: path.to_owned(), source }
+    }
+}
+
+/// The first few names, and how many more.
+fn listed(files: &[String]) -> String {
+    const SHOWN: usize = 12;
+    let mut list = files.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if files.len() > SHOWN {
+        list += &format!(" and {} more", files.len() - SHOWN);
+    }
+    list
+}
+
+/// The name of a leaf as the beginning of file names: letters, digits, `_`, `-` and `.` stay, all
+/// else becomes `_`, because an MTL cannot name a file with a space in it and a slash would leave
+/// the folder.
+#[must_use]
+pub fn file_stem(name: &str) -> String {
+    // Letters of up to 4 bytes, and endings to come: far below the 255 bytes that names may have.
+    const LONGEST: usize = 48;
+    let kept = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+    let stem: String = name.trim().chars().map(kept).take(LONGEST).collect();
+    match stem.chars().next() {
+        None => "leaf".into(),
+        // Not hidden, and not taken for a flag.
+        Some('.' | '-') => format!("_{stem}"),
+        Some(_) => stem,
+    }
+}

@@ -36,6 +36,8 @@ parameters! {
         right: group(SideSpec, SideSpec::default()),
         /// The left side of a unilobed leaf, seen from the front.
         left: group(SideSpec, SideSpec::default()),
+        /// How far the left side is its own: 1 as given, 0 the mirror of the right side.
+        asymmetry: number(1.0, 0.0..=1.0, ""),
         /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y.
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.

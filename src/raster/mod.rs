@@ -6,6 +6,7 @@ pub mod coverage;
 pub mod distance;
 pub mod draw;
 pub mod flood_fill;
+pub mod montage;
 
 /// A rectangle of values, row 0 at the top.
 #[derive(Debug, Clone, PartialEq)]

@@ -65,7 +65,7 @@ pub struct Venation {
 }
 
 impl Venation {
-    /// A pattern from its parts.
+    /// A graph whose nodes have these radii and orders.
     ///
     /// # Panics
     ///
@@ -77,8 +77,8 @@ impl Venation {
         orders: Vec<u8>,
         unreached_sources: usize,
     ) -> Self {
-        assert_eq!(graph.len(), radii.len(), "every node has a radius");
-        assert_eq!(graph.len(), orders.len(), "every node has an order");
+        assert_eq!(radii.len(), graph.len(), "a radius for every node");
+        assert_eq!(orders.len(), graph.len(), "an order for every node");
         Self { graph, radii, orders, unreached_sources }
     }
 

@@ -1,5 +1,9 @@
-//! Tests of the whole, in one binary.
+//! The whole library and the program, from outside. One binary, so a small machine links once.
 
-mod sample_leaf;
-/// What painting promises.
-mod textures;
+mod cli; // the command line as a person types it: messages, exit codes, files
+mod files; // what is written, read back by independent readers
+mod layers; // who may use whom
+mod presets; // every leaf that comes with venation
+mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
+mod support;
+mod textures; // what painting promises

@@ -1,0 +1,258 @@
+//! `venation generate`: leaves into folders.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::Serialize;
+use venation::document::{Comments, Document};
+use venation::io::write::Overwrite;
+use venation::io::{self, FormatKind, LeafFiles, MapKind};
+use venation::pipeline;
+use venation::seed::Seed;
+use venation::spec::LeafSpec;
+
+use super::leaf_args::{self, LeafArgs};
+use super::progress::Bar;
+use super::{Context, Failure, seeds};
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  venation generate beech
+  venation generate beech --seed 7 --size 2048 -o out
+  venation generate willow --seeds 1-3,5,7-20:2 -o willows        13 leaves, willows/salix-alba_s0001 …
+  venation generate beech --outline scan.jpg --length-mm 72       a scanned leaf's outline
+  venation generate beech --outline drawing.png --root 310,540    a drawing, petiole given in pixels
+  venation generate linden --growth marginal --set colour.type=from-edges --set colour.spread_mm=4..8
+  venation generate out/leaf.toml -o again                        the same leaf, byte for byte
+
+Settings: every key of `venation presets show beech` takes a value or a range; each leaf draws its own.
+A folder holds NAME_BaseColor.png, NAME_Opacity.png, NAME_Height.png (16 bit), NAME_Normal.png (OpenGL),
+the same of the underside in back/, NAME.obj and NAME.mtl, leaf.toml and manifest.json.")]
+pub(crate) struct Args {
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Seed of one leaf [default: the file's, else 1].
+    #[arg(long, value_name = "N", conflicts_with = "seeds")]
+    seed: Option<u64>,
+    /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
+    #[arg(long, value_name = "LIST")]
+    seeds: Option<String>,
+    /// Maps to write: basecolor, opacity, height, normal, bump.
+    #[arg(long, value_name = "LIST", default_value = "basecolor,opacity,height,normal")]
+    maps: String,
+    /// Other files to write: obj, svg, json.
+    #[arg(long, value_name = "LIST", default_value = "obj")]
+    format: String,
+    /// Folder to write into [default: the leaf's name].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Threads to use; the bytes are the same for any number [default: all processors].
+    #[arg(short, long, value_name = "N")]
+    threads: Option<usize>,
+    /// Report on stdout as one JSON document.
+    #[arg(long)]
+    json: bool,
+    /// Overwrite files of an earlier run.
+    #[arg(long, conflicts_with = "skip_existing")]
+    force: bool,
+    /// Leave leaves alone that are there already with the same settings.
+    #[arg(long)]
+    skip_existing: bool,
+}
+
+/// One leaf to make.
+struct Job {
+    seed: u64,
+    spec: LeafSpec,
+    folder: PathBuf,
+    /// The settings as they will stand in leaf.toml.
+    toml: String,
+}
+
+/// What became of a leaf.
+#[derive(Debug, Serialize)]
+struct Made {
+    seed: u64,
+    name: String,
+    folder: String,
+    status: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    problem: Option<String>,
+    files: Vec<String>,
+    nodes: usize,
+    unreached_sources: usize,
+}
+
+pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
+    let maps = MapKind::parse_list(&args.maps)
+        .map_err(|problem| Failure::Input(format!("--maps: {problem}")))?;
+    let formats = FormatKind::parse_list(&args.format)
+        .map_err(|problem| Failure::Input(format!("--format: {problem}")))?;
+    let document = args.leaf.document(context)?;
+    let jobs = jobs(args, &document)?;
+    let wanted = Wanted { maps, formats };
+    let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
+    // Nothing is grown before it is known that everything may be written.
+    let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
+        jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
+    } else {
+        jobs.iter().map(|job| (job, overwrite)).collect()
+    };
+    for (job, overwrite) in &todo {
+        let names = io::file_names(&job.spec.name, &wanted.maps, &wanted.formats);
+        io::write::check(&job.folder, &names, *overwrite).map_err(write_failure)?;
+    }
+    let pool = pool(args.threads)?;
+    let single = jobs.len() == 1;
+    let quiet = context.quiet;
+    let results: Vec<Result<Made, Failure>> = pool.install(|| {
+        todo.par_iter()
+            .map(|(job, overwrite)| make(job, &wanted, *overwrite, quiet || !single))
+            .collect()
+    });
+    report(args, context, &jobs, &todo, results)
+}
+
+/// What to write of each leaf.
+struct Wanted {
+    maps: Vec<MapKind>,
+    formats: Vec<FormatKind>,
+}
+
+fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
+    let seeds = match (&args.seeds, args.seed) {
+        (Some(list), _) => {
+            seeds::parse(list).map_err(|problem| Failure::Input(format!("--seeds: {problem}")))?
+        }
+        (None, Some(seed)) => vec![seed],
+        (None, None) => vec![document.seed.unwrap_or(1)],
+    };
+    let single = seeds.len() == 1;
+    let jobs = seeds.into_iter().map(|seed| {
+        let spec = leaf_args::resolve(document, seed)?;
+        let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
+        let folder =
+            if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
+        let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
+        Ok(Job { seed, spec, folder, toml })
+    });
+    jobs.collect()
+}
+
+impl Job {
+    /// Whether an earlier run finished this very leaf: the manifest is written last.
+    fn is_done(&self) -> bool {
+        self.same_settings() && self.folder.join("manifest.json").is_file()
+    }
+
+    fn same_settings(&self) -> bool {
+        std::fs::read_to_string(self.folder.join("leaf.toml")).is_ok_and(|text| text == self.toml)
+    }
+
+    /// A killed run of this very leaf may be completed over; other people's files may not.
+    fn resume(&self) -> Overwrite {
+        if self.same_settings() { Overwrite::Force } else { Overwrite::Refuse }
+    }
+}
+
+fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    if threads == Some(0) {
+        return Err(Failure::Input("--threads: 0 threads make no leaf; give 1 or more".into()));
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()
+        .map_err(|error| Failure::Unexpected(format!("--threads: {error}")))
+}
+
+fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
+    let mut bar = Bar::new(quiet, "");
+    let leaf = pipeline::generate(&job.spec, Seed(job.seed), &mut bar)?;
+    let files = LeafFiles {
+        leaf: &leaf,
+        spec_toml: &job.toml,
+        maps: &wanted.maps,
+        formats: &wanted.formats,
+    };
+    let files = io::encode_leaf(&files);
+    io::write::write(&job.folder, &files, overwrite).map_err(write_failure)?;
+    Ok(Made {
+        seed: job.seed,
+        name: job.spec.name.clone(),
+        folder: shown(&job.folder),
+        status: "made",
+        problem: None,
+        files: files.into_iter().map(|(name, _)| name).collect(),
+        nodes: leaf.grown.venation.graph().len(),
+        unreached_sources: leaf.grown.venation.unreached_sources(),
+    })
+}
+
+fn write_failure(error: io::write::WriteError) -> Failure {
+    match error {
+        io::write::WriteError::Exists { .. } => {
+            Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))
+        }
+        _ => Failure::Input(error.to_string()),
+    }
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn report(
+    args: &Args,
+    context: &mut Context<'_>,
+    jobs: &[Job],
+    todo: &[(&Job, Overwrite)],
+    results: Vec<Result<Made, Failure>>,
+) -> Result<(), Failure> {
+    let (all, skipped) = (todo.len(), jobs.len() - todo.len());
+    let mut list = Vec::new();
+    let mut failures = Vec::new();
+    for ((job, _), result) in todo.iter().zip(results) {
+        match result {
+            Ok(made) => list.push(made),
+            Err(failure) => {
+                let problem = failure.message().unwrap_or_default().to_owned();
+                if jobs.len() > 1 {
+                    eprintln!("venation: seed {}: {problem}", job.seed);
+                }
+                list.push(Made {
+                    seed: job.seed,
+                    name: job.spec.name.clone(),
+                    folder: shown(&job.folder),
+                    status: "failed",
+                    problem: Some(problem),
+                    files: Vec::new(),
+                    nodes: 0,
+                    unreached_sources: 0,
+                });
+                failures.push(failure);
+            }
+        }
+    }
+    if args.json {
+        let version = env!("CARGO_PKG_VERSION");
+        let document =
+            serde_json::json!({ "version": version, "skipped": skipped, "leaves": list });
+        let text = serde_json::to_string_pretty(&document).expect("plain data");
+        writeln!(context.stdout, "{text}")?;
+    } else {
+        for made in &list {
+            for file in &made.files {
+                writeln!(context.stdout, "{}", Path::new(&made.folder).join(file).display())?;
+            }
+        }
+    }
+    if skipped > 0 {
+        context.say(&format!("{skipped} of {} leaves were there already", jobs.len()));
+    }
+    match failures.len() {
+        0 => Ok(()),
+        1 if jobs.len() == 1 => Err(failures.remove(0)),
+        failed => Err(Failure::Partial(format!("{failed} of {all} leaves failed"))),
+    }
+}

@@ -1,0 +1,186 @@
+//! The flags that describe a leaf, shared by the commands that make one.
+
+use std::path::{Path, PathBuf};
+
+use venation::document::{Document, Value};
+use venation::io::outline::{self, OutlineKind, OutlineOptions};
+use venation::presets;
+use venation::seed::Seed;
+use venation::spec::LeafSpec;
+
+use super::{Context, Failure};
+
+/// Growth types as words of the command line.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(crate) enum GrowthWord {
+    /// Full size from the first step on.
+    None,
+    /// New tissue at the margin only.
+    Marginal,
+    /// The same rate in both directions.
+    Isotropic,
+    /// Different rates across and along.
+    Anisotropic,
+}
+
+impl GrowthWord {
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Marginal => "marginal",
+            Self::Isotropic => "isotropic",
+            Self::Anisotropic => "anisotropic",
+        }
+    }
+}
+
+/// Kinds of outline as words of the command line.
+#[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
+pub(crate) enum OutlineWord {
+    /// By what is in the file: a picture whose background encloses more background is a sketch.
+    #[default]
+    Auto,
+    /// A drawing of the outline on a plain background.
+    Sketch,
+    /// A photograph, scan or mask of a leaf on a plain background.
+    Photo,
+    /// CSV with x,y in every line, or a path in an SVG.
+    Polygon,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct LeafArgs {
+    /// A preset (`venation presets` lists them) or a TOML file.
+    #[arg(value_name = "PRESET | FILE.toml")]
+    pub(crate) leaf: String,
+    /// Grow in the outline of this PNG, JPEG, CSV or SVG file instead of the preset's.
+    #[arg(long, value_name = "FILE")]
+    outline: Option<PathBuf>,
+    /// What the outline file is.
+    #[arg(long, value_name = "KIND", value_enum, default_value = "auto", requires = "outline")]
+    outline_kind: OutlineWord,
+    /// Where the petiole meets the blade, in the file's own coordinates (pictures: pixels, y down);
+    /// found by itself when not given.
+    #[arg(long, value_name = "X,Y", requires = "outline", value_parser = point, allow_hyphen_values = true)]
+    root: Option<[f64; 2]>,
+    /// The y axis of the CSV points up, not down.
+    #[arg(long, requires = "outline")]
+    y_up: bool,
+    /// Length of the blade from base to apex, in mm [default: the preset's].
+    #[arg(long, value_name = "L")]
+    length_mm: Option<f64>,
+    /// How the blade grows.
+    #[arg(long, value_name = "TYPE", value_enum)]
+    growth: Option<GrowthWord>,
+    /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
+    #[arg(long, value_name = "PX")]
+    size: Option<u64>,
+    /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y), no darts.
+    #[arg(long, value_name = "FILE.csv")]
+    sources: Option<PathBuf>,
+    /// Set any key: `--set veins.kill_distance_mm=0.6`, a range `0.5..0.8`, `20±10%`.
+    #[arg(long, value_name = "key=value", allow_hyphen_values = true)]
+    set: Vec<String>,
+}
+
+fn point(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("`{text}` is not X,Y");
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    Ok([number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?])
+}
+
+/// What to say about a leaf that is neither a preset nor a file.
+pub(crate) fn unknown(name: &str) -> String {
+    let hint = match presets::nearest(name) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "`venation presets` lists the presets".to_owned(),
+    };
+    format!("`{name}` is neither a preset nor a TOML file; {hint}")
+}
+
+/// Files a person describes a leaf in are small; more than this is a mistake (bytes).
+const LARGEST_TOML: u64 = 64 << 20;
+
+fn read_document(leaf: &str) -> Result<Document, Failure> {
+    if let Some(preset) = presets::find(leaf) {
+        return Ok(preset.document()?);
+    }
+    let path = Path::new(leaf);
+    if !path.exists() && path.extension().is_none() {
+        return Err(Failure::Input(unknown(leaf)));
+    }
+    let fail = |problem: String| Failure::Input(format!("{leaf}: {problem}"));
+    let size = std::fs::metadata(path).map_err(|e| fail(e.to_string()))?.len();
+    if size > LARGEST_TOML {
+        return Err(fail(format!("{size} bytes are too many for a TOML file (limit {LARGEST_TOML})")));
+    }
+    let bytes = std::fs::read(path).map_err(|e| fail(e.to_string()))?;
+    let text = String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".into()))?;
+    Ok(Document::parse(&text, leaf)?)
+}
+
+impl LeafArgs {
+    /// The document that the flags describe: preset or file, outline, then the flags over it.
+    pub(crate) fn document(&self, context: &Context<'_>) -> Result<Document, Failure> {
+        let mut document = read_document(&self.leaf)?;
+        if let Some(length) = self.length_mm {
+            document.set(&format!("margin.length_mm={length}"), "--length-mm")?;
+        }
+        if let Some(growth) = self.growth {
+            document.set(&format!("growth.type={}", growth.word()), "--growth")?;
+        }
+        if let Some(size) = self.size {
+            document.set(&format!("texture.size_px={size}"), "--size")?;
+        }
+        if let Some(path) = &self.outline {
+            self.import_outline(path, &mut document, context)?;
+        }
+        if let Some(path) = &self.sources {
+            let points = outline::read_points(path).map_err(|e| Failure::Input(e.to_string()))?;
+            document.insert("veins.sources_mm", Value::Points(points), "--sources");
+        }
+        for assignment in &self.set {
+            document.set(assignment, "--set")?;
+        }
+        Ok(document)
+    }
+
+    fn import_outline(
+        &self,
+        path: &Path,
+        document: &mut Document,
+        context: &Context<'_>,
+    ) -> Result<(), Failure> {
+        let kind = match self.outline_kind {
+            OutlineWord::Auto => OutlineKind::Auto,
+            OutlineWord::Sketch => OutlineKind::Sketch,
+            OutlineWord::Photo => OutlineKind::Photo,
+            OutlineWord::Polygon => OutlineKind::Polygon,
+        };
+        // Any length will do: each leaf scales the outline to the length it draws.
+        let options = OutlineOptions { kind, root: self.root, y_up: self.y_up, length_mm: 100.0 };
+        let imported =
+            outline::import(path, &options).map_err(|error| Failure::Input(error.to_string()))?;
+        for note in &imported.notes {
+            context.say(&format!("{}: {note}", path.display()));
+        }
+        document.insert("margin.kind", Value::Text("polygon".into()), "--outline");
+        document.insert("margin.polygon_mm", Value::Points(imported.polygon_mm), "--outline");
+        document.insert("margin.cuts_mm", Value::Lines(imported.cuts_mm), "--outline");
+        Ok(())
+    }
+}
+
+/// One leaf of a document, its name checked for use in file names.
+pub(crate) fn resolve(document: &Document, seed: u64) -> Result<LeafSpec, Failure> {
+    let spec = document.resolve(Seed(seed))?;
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+    if spec.name.is_empty() || spec.name.len() > 100 || !spec.name.chars().all(plain) {
+        return Err(Failure::Input(format!(
+            "name = `{}`: files are called after it, so it takes 1 to 100 letters, digits, - and _",
+            spec.name
+        )));
+    }
+    Ok(spec)
+}

@@ -1,0 +1,155 @@
+//! The program: commands over the library's public interface.
+//!
+//! stdout is data, stderr is messages. Exit codes: 0 done, 1 unexpected, 2 bad arguments or input,
+//! 3 would overwrite, 4 some items of a batch failed.
+
+mod bench;
+mod compare;
+mod generate;
+mod leaf_args;
+mod presets;
+mod progress;
+mod seeds;
+
+use std::io::Write;
+
+use clap::{Parser, Subcommand};
+
+/// Why a command stopped.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Something nobody foresaw.
+    Unexpected(String),
+    /// Bad arguments or input.
+    Input(String),
+    /// Files would be overwritten.
+    Exists(String),
+    /// Some items of a batch failed; each was reported when it did.
+    Partial(String),
+    /// Whoever read stdout has gone.
+    BrokenPipe,
+}
+
+impl Failure {
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Self::Unexpected(_) => 1,
+            Self::Input(_) => 2,
+            Self::Exists(_) => 3,
+            Self::Partial(_) => 4,
+            Self::BrokenPipe => 0,
+        }
+    }
+
+    pub(crate) fn message(&self) -> Option<&str> {
+        match self {
+            Self::Unexpected(m) | Self::Input(m) | Self::Exists(m) | Self::Partial(m) => Some(m),
+            Self::BrokenPipe => None,
+        }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    /// For writes to stdout only: files have their own error, which names them.
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Self::BrokenPipe,
+            _ => Self::Unexpected(format!("stdout: {error}")),
+        }
+    }
+}
+
+impl From<venation::error::Error> for Failure {
+    fn from(error: venation::error::Error) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<venation::document::DocumentError> for Failure {
+    fn from(error: venation::document::DocumentError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Where a command writes, and how much it says.
+pub(crate) struct Context<'a> {
+    /// Data.
+    pub(crate) stdout: &'a mut dyn Write,
+    /// Whether messages and bars are wanted.
+    pub(crate) quiet: bool,
+}
+
+impl Context<'_> {
+    /// A message for the person, on stderr.
+    pub(crate) fn say(&self, message: &str) {
+        if !self.quiet {
+            eprintln!("venation: {message}");
+        }
+    }
+}
+
+const LONG_ABOUT: &str = "\
+Grows leaves instead of painting them: a margin bounds a simulation of auxin and veins, Murray's law \
+gives the veins their widths, pigments colour the blade, and out come textures for both sides, a \
+card, vector outlines and the vein graph.
+
+Same settings and seed, same bytes, on any number of threads.";
+
+const EXAMPLES: &str = "\
+Examples:
+  venation generate beech                               textures of a beech leaf in ./fagus-sylvatica
+  venation generate beech --outline scan.jpg -o out     grown in the outline of a scanned leaf
+  venation generate linden --seeds 1-50 -o lindens      fifty different leaves
+  venation compare beech -o growth.png                  growth types side by side
+  venation bench --auxins 1000,2000,4000,8000           time against the number of sources
+  venation presets show beech > my.toml                 every setting, to edit and generate from
+
+Exit codes: 0 done, 1 unexpected, 2 bad arguments or input, 3 would overwrite, 4 part of a batch failed.";
+
+#[derive(Debug, Parser)]
+#[command(name = "venation", version, about = "Grows leaves: textures, vein graphs and cards.")]
+#[command(long_about = LONG_ABOUT, after_help = EXAMPLES, max_term_width = 100)]
+struct Cli {
+    /// Say nothing but errors.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Make leaves: textures, a card, outlines and graphs.
+    Generate(Box<generate::Args>),
+    /// Growth types side by side, as one labelled picture.
+    Compare(Box<compare::Args>),
+    /// Time the growth of veins against the number of auxin sources.
+    Bench(bench::Args),
+    /// List the leaves that come with venation, or show one as complete TOML.
+    Presets(presets::Args),
+}
+
+/// Runs the program on the process's arguments.
+pub(crate) fn run() -> Result<(), Failure> {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are data; mistakes are one line and code 2.
+            if !error.use_stderr() {
+                write!(std::io::stdout(), "{error}")?;
+                return Ok(());
+            }
+            let text = error.to_string();
+            let text = text.trim_start_matches("error: ").trim_end();
+            return Err(Failure::Input(text.to_owned()));
+        }
+    };
+    let mut stdout = std::io::stdout().lock();
+    let mut context = Context { stdout: &mut stdout, quiet: cli.quiet };
+    match &cli.command {
+        Command::Generate(args) => generate::run(args, &mut context),
+        Command::Compare(args) => compare::run(args, &mut context),
+        Command::Bench(args) => bench::run(args, &mut context),
+        Command::Presets(args) => presets::run(args, &mut context),
+    }
+}

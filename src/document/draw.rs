@@ -1,0 +1,78 @@
+//! From a document to one leaf: a value drawn for every range.
+
+use std::collections::BTreeMap;
+
+use super::value::{self, from_plain};
+use super::{Document, DocumentError, Entry, Value, parameters};
+use crate::seed::Seed;
+use crate::spec::LeafSpec;
+
+pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, DocumentError> {
+    let mut tree = toml::Table::new();
+    for parameter in parameters() {
+        let value = document.value(&parameter.key).expect("every parameter has a default");
+        insert(&mut tree, &parameter.key, drawn(&value, &parameter.key, seed));
+    }
+    toml::Value::Table(tree).try_into().map_err(|error: toml::de::Error| DocumentError {
+        origin: "leaf".into(),
+        problem: error.message().to_owned(),
+    })
+}
+
+/// Drawn numbers are rounded to this many to the unit: a millionth of a millimetre or of a degree
+/// shows nowhere, and keeps the files readable.
+const ROUNDING: f64 = 1e6;
+
+fn drawn(value: &Value, key: &str, seed: Seed) -> toml::Value {
+    match value {
+        Value::Number { low, high } if low == high => toml::Value::Float(*low),
+        Value::Number { low, high } => {
+            let x = seed.parameter(key).between(*low, *high);
+            toml::Value::Float(((x * ROUNDING).round() / ROUNDING).clamp(*low, *high))
+        }
+        Value::Count { low, high } => {
+            let span = (high - low) as f64 + 1.0;
+            let step = if low == high { 0 } else { (seed.parameter(key).unit() * span) as u64 };
+            toml::Value::Integer((low + step).min(*high) as i64)
+        }
+        Value::Text(text) => toml::Value::String(text.clone()),
+        Value::Flag(flag) => toml::Value::Boolean(*flag),
+        Value::Points(points) => points_value(points),
+        Value::Lines(lines) => {
+            toml::Value::Array(lines.iter().map(|line| points_value(line)).collect())
+        }
+    }
+}
+
+fn points_value(points: &[[f64; 2]]) -> toml::Value {
+    let point = |p: &[f64; 2]| toml::Value::Array(p.map(toml::Value::Float).to_vec());
+    toml::Value::Array(points.iter().map(point).collect())
+}
+
+fn insert(tree: &mut toml::Table, key: &str, value: toml::Value) {
+    match key.split_once('.') {
+        None => {
+            tree.insert(key.to_owned(), value);
+        }
+        Some((group, rest)) => {
+            let child = tree
+                .entry(group.to_owned())
+                .or_insert_with(|| toml::Value::Table(toml::Table::new()));
+            let child = child.as_table_mut().expect("a group of parameters is a table");
+            insert(child, rest, value);
+        }
+    }
+}
+
+pub(super) fn document_of(spec: &LeafSpec, seed: u64) -> Document {
+    let tree = toml::Value::try_from(spec).expect("a leaf is plain data");
+    let entries: BTreeMap<String, Entry> = parameters()
+        .iter()
+        .filter_map(|parameter| {
+            let value =
+                from_plain(&tree, parameter).or_else(|| value::default_of(&parameter.key))?;
+            Some((parameter.key.clone(), Entry { value, origin: "leaf".into() }))
+        })
+        .collect();
+    Document { entries, seed: Some(seed) }
+}

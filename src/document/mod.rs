@@ -1,0 +1,244 @@
+//! A leaf as a person writes it: TOML in which every number may be a range.
+//!
+//! A [`Document`] is a flat list from dotted key to value, checked against the knobs that the stages
+//! declare ([`crate::parameter`]). Presets, files and `--set` lay documents over each other;
+//! [`Document::resolve`] draws one value for every range and gives the plain [`LeafSpec`] the stages
+//! work with. Each key draws from a stream of its own, so setting one leaves the others as they were.
+
+mod draw;
+mod parse;
+mod value;
+mod write;
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use crate::parameter::{Parameter, Parameters};
+use crate::spec::LeafSpec;
+pub use value::Value;
+
+/// Every knob of a leaf, in the order in which files show them.
+static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(LeafSpec::parameters);
+
+/// Every knob of a leaf, in the order in which files show them.
+#[must_use]
+pub fn parameters() -> &'static [Parameter] {
+    &PARAMETERS
+}
+
+/// What is wrong with the description of a leaf.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{origin}: {problem}")]
+pub struct DocumentError {
+    /// Where it was said: `beech.toml:12`, `--set`, …
+    pub origin: String,
+    /// The key, the value, the limit and what to do.
+    pub problem: String,
+}
+
+/// A value and where it was said.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    value: Value,
+    origin: String,
+}
+
+/// The description of a leaf: the keys that were given, and the seed if one was.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    entries: BTreeMap<String, Entry>,
+    /// The seed written in the file, which the command line may override.
+    pub seed: Option<u64>,
+}
+
+impl Document {
+    /// A document that gives nothing: every value is the default.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Reads TOML. `origin` names the text in errors.
+    ///
+    /// # Errors
+    ///
+    /// Syntax, unknown keys (with the nearest known one), wrong types, values out of their limits,
+    /// ranges that run backwards; each with its line.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, DocumentError> {
+        parse::document(text, origin)
+    }
+
+    /// Sets one key from `key=value` as typed on a command line; `min..max` is a range,
+    /// `20±10%` one around a middle.
+    ///
+    /// # Errors
+    ///
+    /// As [`Document::parse`].
+    pub fn set(&mut self, assignment: &str, origin: &str) -> Result<(), DocumentError> {
+        let (key, value) = parse::assignment(assignment, origin)?;
+        self.insert(&key, value, origin);
+        Ok(())
+    }
+
+    /// Sets one key to a checked value.
+    ///
+    /// # Panics
+    ///
+    /// If no parameter has that key: the caller names it in its source.
+    pub fn insert(&mut self, key: &str, value: Value, origin: &str) {
+        assert!(parameters().iter().any(|p| p.key == key), "{key} is not a parameter");
+        self.entries.insert(key.to_owned(), Entry { value, origin: origin.to_owned() });
+    }
+
+    /// Whether a key was given.
+    #[must_use]
+    pub fn gives(&self, key: &str) -> bool {
+        self.entries.contains_key(key)
+    }
+
+    /// Lays another document over this one: what it gives replaces what this gave.
+    pub fn overlay(&mut self, over: Self) {
+        self.entries.extend(over.entries);
+        self.seed = over.seed.or(self.seed);
+    }
+
+    /// The value of a key: the one given, else the default.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<Value> {
+        match self.entries.get(key) {
+            Some(entry) => Some(entry.value.clone()),
+            None => value::default_of(key),
+        }
+    }
+
+    /// One leaf: every range drawn with the seed's own stream for its key.
+    ///
+    /// # Errors
+    ///
+    /// When values that are each within their limits contradict each other.
+    pub fn resolve(&self, seed: crate::seed::Seed) -> Result<LeafSpec, DocumentError> {
+        draw::resolve(self, seed)
+    }
+
+    /// The document of a resolved leaf: every key given, no range left.
+    #[must_use]
+    pub fn of_spec(spec: &LeafSpec, seed: u64) -> Self {
+        draw::document_of(spec, seed)
+    }
+
+    /// Complete TOML: every key with its value, given or default.
+    #[must_use]
+    pub fn to_toml(&self, comments: Comments) -> String {
+        write::toml(self, comments)
+    }
+}
+
+/// How much [`Document::to_toml`] explains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comments {
+    /// Keys and values.
+    None,
+    /// Meaning, unit and limits over every key.
+    Full,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::Seed;
+
+    fn problem(text: &str) -> String {
+        Document::parse(text, "leaf.toml").expect_err("this text is wrong").to_string()
+    }
+
+    #[test]
+    fn a_misspelt_key_is_refused_with_its_line_and_the_nearest_key() {
+        let message = problem("name = \"x\"\n[veins]\nkill_distanse_mm = 2\n");
+        assert_eq!(
+            message,
+            "leaf.toml:3: unknown key `veins.kill_distanse_mm`; did you mean \
+             `veins.kill_distance_mm`?"
+        );
+    }
+
+    #[test]
+    fn a_value_out_of_its_limits_names_the_limits() {
+        let message = problem("[growth]\nscale = 3.0\n");
+        assert_eq!(message, "leaf.toml:2: growth.scale = 3 is outside 0.01 to 1");
+        assert!(problem("[growth]\nscale = [0.5, 2]\n").contains("0.01 to 1"));
+        assert!(problem("[growth]\nscale = nan\n").contains("not a finite number"));
+        assert!(problem("[growth]\nscale = inf\n").contains("not a finite number"));
+        assert!(problem("[growth]\nscale = \"big\"\n").contains("a number"));
+        assert!(problem("[growth]\ntotal_steps = 2.5\n").contains("whole number"));
+        assert!(problem("[growth]\ntotal_steps = -1\n").contains("1 to 100000"));
+    }
+
+    #[test]
+    fn a_range_that_runs_backwards_is_refused() {
+        let message = problem("[growth]\nscale = [0.9, 0.5]\n");
+        assert_eq!(message, "leaf.toml:2: growth.scale = 0.9..0.5 runs backwards; write 0.5..0.9");
+    }
+
+    #[test]
+    fn an_unknown_word_lists_the_words() {
+        let message = problem("[growth]\ntype = \"isotropc\"\n");
+        assert!(message.contains("did you mean `isotropic`"), "{message}");
+    }
+
+    #[test]
+    fn broken_toml_names_its_line() {
+        assert!(problem("[growth\nscale = 1").starts_with("leaf.toml:1: "));
+    }
+
+    #[test]
+    fn a_percent_is_a_range_around_its_middle() {
+        let document = Document::parse("[margin]\nlength_mm = \"80 ± 25%\"\n", "").unwrap();
+        assert_eq!(
+            document.value("margin.length_mm"),
+            Some(Value::Number { low: 60.0, high: 100.0 })
+        );
+    }
+
+    #[test]
+    fn drawing_stays_in_the_range_and_setting_one_key_leaves_the_others() {
+        let mut document = Document::parse(
+            "[margin]\nlength_mm = [60, 100]\n[growth]\ntotal_steps = [10, 12]\n",
+            "",
+        )
+        .unwrap();
+        let mut seen = std::collections::BTreeSet::new();
+        for seed in 0..200 {
+            let spec = document.resolve(Seed(seed)).unwrap();
+            assert!((60.0..=100.0).contains(&spec.margin.length_mm));
+            seen.insert(spec.growth.total_steps);
+        }
+        assert_eq!(seen.into_iter().collect::<Vec<_>>(), [10, 11, 12]);
+        let before = document.resolve(Seed(4)).unwrap();
+        document.set("growth.total_steps=500", "--set").unwrap();
+        let after = document.resolve(Seed(4)).unwrap();
+        assert_eq!(after.growth.total_steps, 500);
+        assert_eq!(after.margin, before.margin);
+    }
+
+    #[test]
+    fn a_resolved_leaf_written_and_read_again_is_the_same_leaf() {
+        let mut document = Document::parse("[margin]\nlength_mm = [60, 100]\n", "").unwrap();
+        document.set("veins.sources_mm=[[1.5, 2], [3, 4]]", "--set").unwrap();
+        let spec = document.resolve(Seed(9)).unwrap();
+        let text = Document::of_spec(&spec, 9).to_toml(Comments::None);
+        let again = Document::parse(&text, "leaf.toml").unwrap();
+        assert_eq!(again.seed, Some(9));
+        assert_eq!(again.resolve(Seed(9)).unwrap(), spec);
+        let commented = Document::of_spec(&spec, 9).to_toml(Comments::Full);
+        assert_eq!(
+            Document::parse(&commented, "leaf.toml").unwrap().resolve(Seed(1)).unwrap(),
+            spec
+        );
+    }
+
+    #[test]
+    fn every_default_lies_within_its_own_limits() {
+        let text = Document::new().to_toml(Comments::None);
+        Document::parse(&text, "defaults").unwrap();
+    }
+}

@@ -1,0 +1,196 @@
+//! TOML and `key=value` into checked values, with the place of every mistake.
+
+use toml::de::{DeTable, DeValue};
+
+use super::value::{kind_in_words, nearest};
+use super::{Document, DocumentError, Entry, Value, parameters};
+use crate::parameter::{Kind, Parameter};
+
+/// Keys of a file that are not knobs of the leaf.
+const SEED: &str = "seed";
+const VERSION: &str = "version";
+
+pub(super) fn document(text: &str, origin: &str) -> Result<Document, DocumentError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let line_of = |at: usize| text[..at.min(text.len())].matches('\n').count() + 1;
+    let table = DeTable::parse(text).map_err(|error| DocumentError {
+        origin: format!("{origin}:{}", error.span().map_or(1, |span| line_of(span.start))),
+        problem: error.message().lines().collect::<Vec<_>>().join("; "),
+    })?;
+    let mut reader = Reader { origin, line_of: &line_of, document: Document::new() };
+    reader.table("", table.get_ref())?;
+    Ok(reader.document)
+}
+
+struct Reader<'a> {
+    origin: &'a str,
+    line_of: &'a dyn Fn(usize) -> usize,
+    document: Document,
+}
+
+impl Reader<'_> {
+    fn table(&mut self, prefix: &str, table: &DeTable<'_>) -> Result<(), DocumentError> {
+        for (name, value) in table.iter() {
+            let origin = format!("{}:{}", self.origin, (self.line_of)(name.span().start));
+            let key = format!("{prefix}{}", name.get_ref());
+            let fail = |problem: String| DocumentError { origin: origin.clone(), problem };
+            match value.get_ref() {
+                DeValue::Table(inner) => {
+                    let group = format!("{key}.");
+                    if !parameters().iter().any(|p| p.key.starts_with(&group)) {
+                        return Err(fail(unknown(&key)));
+                    }
+                    self.table(&group, inner)?;
+                }
+                value if key == SEED => {
+                    let seed = integer(value).and_then(|n| u64::try_from(n).ok());
+                    let wrong = || fail("seed takes a whole number from 0 on".into());
+                    self.document.seed = Some(seed.ok_or_else(wrong)?);
+                }
+                _ if key == VERSION => {}
+                value => {
+                    let parameter = find(&key).ok_or_else(|| fail(unknown(&key)))?;
+                    let value = read(value, parameter).map_err(fail)?;
+                    self.document.entries.insert(key, Entry { value, origin });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn assignment(text: &str, origin: &str) -> Result<(String, Value), DocumentError> {
+    let fail = |problem: String| DocumentError { origin: origin.to_owned(), problem };
+    let Some((key, value)) = text.split_once('=') else {
+        return Err(fail(format!("`{text}` is not key=value")));
+    };
+    let (key, value) = (key.trim(), value.trim());
+    let parameter = find(key).ok_or_else(|| fail(unknown(key)))?;
+    let value = match parameter.kind {
+        Kind::Text | Kind::Choice(_) => Value::Text(value.trim_matches('"').to_owned()),
+        Kind::Flag => {
+            let flag = value.parse().map_err(|_| fail(format!("{key} takes true or false")))?;
+            Value::Flag(flag)
+        }
+        _ if value.starts_with('[') => {
+            let line = format!("x = {value}");
+            let table = DeTable::parse(&line).map_err(|_| {
+                fail(format!("{key} = {value}: not {}", kind_in_words(&parameter.kind)))
+            })?;
+            read(table.get_ref()["x"].get_ref(), parameter).map_err(fail)?
+        }
+        _ => number_text(value, parameter).map_err(fail)?,
+    };
+    check(value, parameter).map(|value| (key.to_owned(), value)).map_err(fail)
+}
+
+fn find(key: &str) -> Option<&'static Parameter> {
+    parameters().iter().find(|p| p.key == key)
+}
+
+fn unknown(key: &str) -> String {
+    let keys = || parameters().iter().map(|p| p.key.as_str());
+    // A last part that stands elsewhere is more likely the right word in the wrong group.
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let same_ending = || keys().find(|k| k.rsplit('.').next() == Some(last));
+    match nearest(key, keys()).or_else(same_ending) {
+        Some(near) => format!("unknown key `{key}`; did you mean `{near}`?"),
+        None => format!("unknown key `{key}`; `venation presets show beech` lists all keys"),
+    }
+}
+
+fn read(value: &DeValue<'_>, parameter: &Parameter) -> Result<Value, String> {
+    let takes = || format!("{} takes {}", parameter.key, kind_in_words(&parameter.kind));
+    let read = match (&parameter.kind, value) {
+        (Kind::Number { .. } | Kind::Count { .. }, DeValue::String(text)) => {
+            number_text(text, parameter)?
+        }
+        (Kind::Number { .. } | Kind::Count { .. }, DeValue::Array(ends)) => {
+            let [low, high] = &ends[..] else { return Err(takes()) };
+            let end = |v: &DeValue<'_>| float(v).ok_or_else(takes);
+            range(end(low.get_ref())?, end(high.get_ref())?, parameter)?
+        }
+        (Kind::Number { .. } | Kind::Count { .. }, value) => {
+            let x = float(value).ok_or_else(takes)?;
+            range(x, x, parameter)?
+        }
+        (Kind::Text | Kind::Choice(_), DeValue::String(text)) => Value::Text(text.to_string()),
+        (Kind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
+        (Kind::Points, list) => Value::Points(points(list).ok_or_else(takes)?),
+        (Kind::Lines, DeValue::Array(lines)) => {
+            let lines = lines.iter().map(|line| points(line.get_ref())).collect::<Option<_>>();
+            Value::Lines(lines.ok_or_else(takes)?)
+        }
+        _ => return Err(takes()),
+    };
+    check(read, parameter)
+}
+
+fn check(value: Value, parameter: &Parameter) -> Result<Value, String> {
+    match value.problem(parameter) {
+        Some(problem) => Err(problem),
+        None => Ok(value),
+    }
+}
+
+/// `0.5`, `0.4..0.6`, `0.5±20%` or `0.5+-20%`.
+fn number_text(text: &str, parameter: &Parameter) -> Result<Value, String> {
+    let takes = || {
+        let takes = kind_in_words(&parameter.kind);
+        format!("{} = `{text}`: it takes {takes}, `min..max` or `middle±percent%`", parameter.key)
+    };
+    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| takes());
+    if let Some((low, high)) = text.split_once("..") {
+        return range(number(low)?, number(high.trim_start_matches('='))?, parameter);
+    }
+    if let Some((middle, percent)) = text.split_once('±').or_else(|| text.split_once("+-")) {
+        let middle = number(middle)?;
+        let percent = number(percent.trim().strip_suffix('%').ok_or_else(takes)?)?;
+        let reach = (middle * percent / 100.0).abs();
+        let whole = matches!(parameter.kind, Kind::Count { .. });
+        let end = |x: f64| if whole { x.round() } else { x };
+        return range(end(middle - reach), end(middle + reach), parameter);
+    }
+    range(number(text)?, number(text)?, parameter)
+}
+
+fn range(low: f64, high: f64, parameter: &Parameter) -> Result<Value, String> {
+    let Kind::Count { min, max, .. } = parameter.kind else {
+        return Ok(Value::Number { low, high });
+    };
+    let whole = |x: f64| {
+        if !x.is_finite() || x.fract() != 0.0 {
+            return Err(format!("{} = {x} is not a whole number", parameter.key));
+        }
+        if x < min as f64 || x > max as f64 {
+            return Err(format!("{} = {x} is outside {min} to {max}", parameter.key));
+        }
+        Ok(x as u64)
+    };
+    Ok(Value::Count { low: whole(low)?, high: whole(high)? })
+}
+
+fn integer(value: &DeValue<'_>) -> Option<i64> {
+    match value {
+        DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
+        _ => None,
+    }
+}
+
+fn float(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        value => integer(value).map(|n| n as f64),
+    }
+}
+
+fn points(list: &DeValue<'_>) -> Option<Vec<[f64; 2]>> {
+    let DeValue::Array(list) = list else { return None };
+    list.iter()
+        .map(|point| {
+            let DeValue::Array(point) = point.get_ref() else { return None };
+            let [x, y] = &point[..] else { return None };
+            Some([float(x.get_ref())?, float(y.get_ref())?])
+        })
+        .collect()
+}

@@ -1,0 +1,268 @@
+//! The command line as a person types it: messages, exit codes, files.
+
+use crate::support::{assert_same, contents, fail, fresh, run, succeed};
+
+/// Flags that make a small leaf quickly.
+const SMALL: &[&str] = &[
+    "--size",
+    "64",
+    "--set",
+    "veins.kill_distance_mm=4",
+    "--set",
+    "veins.source_spawn_distance_mm=5",
+    "--set",
+    "veins.vein_spawn_distance_mm=5",
+    "--set",
+    "veins.node_step_mm=1",
+];
+
+fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    arguments.iter().copied().chain(SMALL.iter().copied()).collect()
+}
+
+#[test]
+fn a_leaf_comes_with_all_its_files() {
+    let folder = fresh();
+    let stdout = succeed(folder.path(), &small(&["generate", "beech", "-o", "out"]));
+    let names: Vec<String> = contents(&folder.path().join("out"))
+        .into_keys()
+        .map(|path| path.to_string_lossy().into_owned())
+        .collect();
+    let n = "fagus-sylvatica";
+    let mut expected: Vec<String> = ["BaseColor", "Height", "Normal", "Opacity"]
+        .iter()
+        .flat_map(|map| [format!("{n}_{map}.png"), format!("back/{n}_{map}.png")])
+        .chain([format!("{n}.obj"), format!("{n}.mtl")])
+        .chain(["leaf.toml".into(), "manifest.json".into()])
+        .collect();
+    expected.sort();
+    assert_eq!(names, expected);
+    assert_eq!(stdout.lines().count(), expected.len());
+    assert!(stdout.contains(&format!("out/{n}_BaseColor.png")), "{stdout}");
+}
+
+#[test]
+fn the_other_formats_and_maps_come_when_asked_for() {
+    let folder = fresh();
+    let arguments =
+        ["generate", "willow", "-o", "o", "--maps", "bump,height", "--format", "svg,json"];
+    succeed(folder.path(), &small(&arguments));
+    let files = contents(&folder.path().join("o"));
+    let has = |name: &str| files.keys().any(|path| path.to_string_lossy() == name);
+    for name in ["salix-alba_Bump.png", "salix-alba_Height.png", "back/salix-alba_Bump.png"] {
+        assert!(has(name), "{name}");
+    }
+    assert!(has("salix-alba.svg") && has("salix-alba_veins.json"));
+    assert!(!has("salix-alba_BaseColor.png") && !has("salix-alba.obj"));
+}
+
+#[test]
+fn an_existing_leaf_is_not_overwritten_unless_forced() {
+    let folder = fresh();
+    let arguments = small(&["generate", "beech", "-o", "out"]);
+    succeed(folder.path(), &arguments);
+    let before = contents(&folder.path().join("out"));
+    let message = fail(folder.path(), 3, &arguments);
+    assert!(message.contains("out") && message.contains("--force"), "{message}");
+    assert_eq!(contents(&folder.path().join("out")), before);
+    let forced = [&arguments[..], &["--force", "--seed", "2"]].concat();
+    succeed(folder.path(), &forced);
+    assert_ne!(contents(&folder.path().join("out")), before);
+}
+
+#[test]
+fn skip_existing_completes_a_killed_batch_and_refuses_strangers() {
+    let folder = fresh();
+    let arguments =
+        small(&["generate", "beech", "--seeds", "1-3", "-o", "out", "--skip-existing"]);
+    succeed(folder.path(), &arguments);
+    let out = folder.path().join("out");
+    let whole = contents(&out);
+    // A run killed in the middle of leaf 2 leaves it without its manifest.
+    let leaf = out.join("fagus-sylvatica_s0002");
+    std::fs::remove_file(leaf.join("manifest.json")).unwrap();
+    std::fs::remove_file(leaf.join("fagus-sylvatica_Normal.png")).unwrap();
+    let (code, _, stderr) = run(folder.path(), &arguments);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stderr.contains("2 of 3 leaves were there already"), "{stderr}");
+    assert_eq!(contents(&out), whole);
+    // Another leaf's settings in the same place are not touched.
+    let other = [&arguments[..], &["--set", "texture.gutter=0.1"]].concat();
+    fail(folder.path(), 3, &other);
+    assert_eq!(contents(&out), whole);
+}
+
+#[test]
+fn seed_3_alone_equals_seed_3_of_a_batch_on_any_number_of_threads() {
+    let folder = fresh();
+    succeed(
+        folder.path(),
+        &small(&["generate", "linden", "--seeds", "1-4", "-o", "batch", "-t", "2"]),
+    );
+    succeed(folder.path(), &small(&["generate", "linden", "--seed", "3", "-o", "one", "-t", "1"]));
+    assert_same(&folder.path().join("batch/tilia-cordata_s0003"), &folder.path().join("one"));
+}
+
+#[test]
+fn leaf_toml_run_again_gives_the_same_bytes() {
+    let folder = fresh();
+    succeed(folder.path(), &small(&["generate", "linden", "--seed", "5", "-o", "one"]));
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "two", "-t", "1"]);
+    assert_same(&folder.path().join("one"), &folder.path().join("two"));
+}
+
+#[test]
+fn an_outline_keeps_no_path_and_its_leaf_toml_gives_the_same_bytes() {
+    let folder = fresh();
+    let points: String = (0..60)
+        .map(|i| {
+            let t = f64::from(i) / 60.0 * std::f64::consts::TAU;
+            format!("{},{}\n", 100.0 + 40.0 * t.sin(), 200.0 - 100.0 * t.cos())
+        })
+        .collect();
+    std::fs::write(folder.path().join("my-outline.csv"), format!("x,y\n{points}")).unwrap();
+    succeed(
+        folder.path(),
+        &small(&[
+            "generate", "beech", "--outline", "my-outline.csv", "--root", "100,300", "--length-mm",
+            "50", "-o", "one",
+        ]),
+    );
+    let toml = std::fs::read_to_string(folder.path().join("one/leaf.toml")).unwrap();
+    assert!(!toml.contains("my-outline"), "{toml}");
+    assert!(toml.contains("length_mm = 50.0"), "{toml}");
+    std::fs::remove_file(folder.path().join("my-outline.csv")).unwrap();
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "two"]);
+    assert_same(&folder.path().join("one"), &folder.path().join("two"));
+}
+
+#[test]
+fn given_sources_are_all_the_sources_there_are() {
+    let folder = fresh();
+    std::fs::write(folder.path().join("s.csv"), "x,y\n5,40\n-5,40\n0,60\n").unwrap();
+    let arguments = small(&[
+        "generate", "beech", "--sources", "s.csv", "--growth", "none", "-o", "out", "--format", "json",
+    ]);
+    succeed(folder.path(), &arguments);
+    let text =
+        std::fs::read_to_string(folder.path().join("out/fagus-sylvatica_veins.json")).unwrap();
+    let graph: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let nodes = graph["nodes"].as_array().unwrap();
+    let parents: Vec<u64> = nodes.iter().filter_map(|n| n["parent"].as_u64()).collect();
+    let tips = (0..nodes.len() as u64).filter(|id| !parents.contains(id)).count();
+    assert!((1..=3).contains(&tips), "{tips} tips for three sources");
+}
+
+#[test]
+fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
+    let folder = fresh();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    std::fs::write(folder.path().join("bad.toml"), "[veins]\nkill_distanse_mm = 1\n").unwrap();
+    std::fs::write(folder.path().join("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    let cases: &[(&[&str], &str)] = &[
+        (&["generate", "beach"], "did you mean `beech`"),
+        (&["generate", "nowhere.toml"], "nowhere.toml"),
+        (&["generate", "bad.toml"], "bad.toml:2: unknown key `veins.kill_distanse_mm`"),
+        (&["generate", "binary.toml"], "not UTF-8"),
+        (&["generate", "."], "."),
+        (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
+        (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),
+        (&["generate", "beech", "--set", "veins.kill_distance_mm=2..1"], "runs backwards"),
+        (&["generate", "beech", "--set", "veins.kill_distance_mm=nan"], "not a finite number"),
+        (&["generate", "beech", "--set", "veins.kill_distance_mm=0"], "outside 0.001 to 1000"),
+        (&["generate", "beech", "--size", "0"], "outside 16 to 16384"),
+        (&["generate", "beech", "--size", "90000"], "outside 16 to 16384"),
+        (&["generate", "beech", "--length-mm", "inf"], "not a finite number"),
+        (&["generate", "beech", "-t", "0"], "--threads"),
+        (&["generate", "beech", "--seeds", "3-1"], "--seeds: column 1"),
+        (&["generate", "beech", "--maps", "basecolour"], "basecolor"),
+        (&["generate", "beech", "--format", "fbx"], "fbx"),
+        (&["generate", "beech", "--outline", "nothing.png"], "nothing.png"),
+        (&["generate", "beech", "--sources", "nothing.csv"], "nothing.csv"),
+        (&["generate", "beech", "--growth", "fast"], "fast"),
+        (&["generate", "beech", "-o", "file/below"], "file"),
+        (&["generate", "beech", "--set", "name=../up"], "name"),
+        (&["presets", "show", "beach"], "did you mean `beech`"),
+        (&["bench", "--auxins", "zero"], "zero"),
+        (&["bench", "--workload", "nothing.json"], "nothing.json"),
+        (&["frobnicate"], "frobnicate"),
+    ];
+    for (arguments, expected) in cases {
+        let message = fail(folder.path(), 2, arguments);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+    let left: Vec<_> = contents(folder.path()).into_keys().collect();
+    assert_eq!(left.len(), 3, "{left:?}");
+}
+
+#[test]
+fn json_alone_on_stdout() {
+    let folder = fresh();
+    let stdout = succeed(
+        folder.path(),
+        &small(&["generate", "aspen", "--seeds", "1-2", "-o", "out", "--json"]),
+    );
+    let report: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    let leaves = report["leaves"].as_array().unwrap();
+    assert_eq!(leaves.len(), 2);
+    assert_eq!(leaves[1]["seed"], 2);
+    assert_eq!(leaves[0]["status"], "made");
+    assert!(leaves[0]["nodes"].as_u64().unwrap() > 10);
+}
+
+#[test]
+fn part_of_a_batch_may_fail() {
+    let folder = fresh();
+    // Base angles on both sides of 90 without a basal extension: some seeds contradict themselves.
+    let arguments = small(&[
+        "generate",
+        "beech",
+        "--seeds",
+        "1-6",
+        "-o",
+        "out",
+        "--set",
+        "margin.right.base_angle_deg=80..100",
+    ]);
+    let message = fail(folder.path(), 4, &arguments);
+    assert!(message.contains("margin.right.base_angle_deg"), "{message}");
+    assert!(message.contains("of 6 leaves failed"), "{message}");
+    assert!(!contents(&folder.path().join("out")).is_empty());
+}
+
+#[test]
+fn presets_are_listed_and_shown() {
+    let folder = fresh();
+    let list = succeed(folder.path(), &["presets"]);
+    assert!(list.lines().count() >= 6, "{list}");
+    assert!(list.contains("fagus-sylvatica") && list.contains("beech"));
+    let toml = succeed(folder.path(), &["presets", "show", "beech"]);
+    std::fs::write(folder.path().join("my.toml"), toml).unwrap();
+    succeed(folder.path(), &small(&["generate", "my.toml", "-o", "a"]));
+    succeed(folder.path(), &small(&["generate", "beech", "-o", "b"]));
+    assert_same(&folder.path().join("a"), &folder.path().join("b"));
+}
+
+#[test]
+fn compare_writes_a_sheet_and_a_table() {
+    let folder = fresh();
+    let arguments = small(&["compare", "beech", "-o", "sheet.png", "--csv", "table.csv"]);
+    succeed(folder.path(), &arguments);
+    let table = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
+    let growths: Vec<&str> =
+        table.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
+    assert_eq!(growths, ["none", "marginal", "isotropic", "anisotropic"]);
+    let sheet = std::fs::read(folder.path().join("sheet.png")).unwrap();
+    assert_eq!(&sheet[1..4], b"PNG");
+    fail(folder.path(), 3, &arguments);
+}
+
+#[test]
+fn bench_prints_a_table_and_the_exponent() {
+    let folder = fresh();
+    let out =
+        succeed(folder.path(), &["bench", "--auxins", "200,400,800", "--csv", "b.csv", "--runs", "1"]);
+    assert!(out.contains("exponent"), "{out}");
+    let table = std::fs::read_to_string(folder.path().join("b.csv")).unwrap();
+    assert_eq!(table.lines().count(), 4, "{table}");
+}

@@ -100,8 +100,8 @@ fn row_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>, nearest: &m
     }
     for (i, parabola) in envelope.iter().enumerate() {
         let end = envelope.get(i + 1).map_or(width, |next| next.from);
-        let site = u32::from(sites[parabola.column as usize]) * width as u32
-            + parabola.column as u32;
+        let site =
+            u32::from(sites[parabola.column as usize]) * width as u32 + parabola.column as u32;
         nearest[parabola.from as usize..end as usize].fill(site);
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! The source is the nearest fully covered texel: half-covered ones would smear the fringe.
 
-
 use super::SideMaps;
 use crate::raster::Grid;
 use crate::raster::distance::{NO_SITE, nearest_sites};

@@ -21,6 +21,12 @@ const GROOVE_RADII: f32 = 2.6;
 /// are tissue, not wires.
 const SOFT_EDGE: f32 = 0.3;
 
+/// Where veins overlap, one of this radius (mm) counts half.
+const SHOWS_MM: f32 = 0.05;
+
+/// A vein thins to this share of its radius at its end, so that it is lost in the tissue.
+const TIP: f64 = 0.35;
+
 /// The veins of a leaf as strokes on its texture (pixels).
 #[derive(Debug)]
 pub(super) struct Strokes {
@@ -48,11 +54,16 @@ impl Strokes {
             frame.pixel_from_leaf(venation.graph().positions()[node as usize], size).as_vec2()
         };
         let radius = |node: u32| venation.radii()[node as usize] * pixels_per_mm;
+        let mut ends: Vec<bool> =
+            venation.graph().child_counts().iter().map(|&count| count == 0).collect();
+        for &(a, b) in venation.graph().joins() {
+            (ends[a as usize], ends[b as usize]) = (false, false);
+        }
         let grown = venation.graph().edges().map(|(parent, child)| Capsule {
             a: at(parent),
             b: at(child),
             radius_a: radius(parent).min(radius(child) * BRANCH_FLARE) as f32,
-            radius_b: radius(child) as f32,
+            radius_b: (radius(child) * if ends[child as usize] { TIP } else { 1.0 }) as f32,
         });
         let joined = venation.graph().joins().iter().map(|&(a, b)| {
             let thinner = radius(a).min(radius(b)) as f32;
@@ -100,8 +111,11 @@ impl VeinAt {
             return;
         }
         let cover = stroke_share(distance2.sqrt(), radius, half);
-        if cover > self.cover || (cover == self.cover && radius * mm > self.radius) {
-            (self.cover, self.radius) = (cover, radius * mm);
+        // Of two veins the one that shows more: a fine branch inside its parent's soft edge loses.
+        let radius_mm = radius * mm;
+        let shows = |cover: f32, radius: f32| cover * radius / (radius + SHOWS_MM);
+        if shows(cover, radius_mm) > shows(self.cover, self.radius) {
+            (self.cover, self.radius) = (cover, radius_mm);
         }
         if distance2 < radius2 {
             self.dome = self.dome.max((radius2 - distance2).sqrt() * mm);

@@ -90,10 +90,8 @@ impl Guide {
         let edges: Vec<_> = outline.iter().copied().chain(slits).collect();
         let veins: Vec<_> = vein_lines(venation, |_| true);
         let major: Vec<_> = vein_lines(venation, |order| order <= 2);
-        let mut fields: Vec<Vec<f32>> = [&edges, &major, &veins]
-            .par_iter()
-            .map(|lines| lattice.distances(lines))
-            .collect();
+        let mut fields: Vec<Vec<f32>> =
+            [&edges, &major, &veins].par_iter().map(|lines| lattice.distances(lines)).collect();
         lattice.negate_outside(&outline, &mut fields[0]);
         let from_veins = lattice.vein_weights(venation, reach.vein_spread);
         let speckle = lattice.speckle_weights(reach.speckles, reach.speckle_mm);

@@ -67,9 +67,10 @@ impl Stalk {
         let (mut points, mut radii) = (vec![DVec2::ZERO], Vec::new());
         for i in 0..=PIECES {
             let t = i as f32 / PIECES as f32;
-            let widening = f64::from(smooth(0.0, 0.8, t));
+            // Most of the widening right below the blade, then a slow taper.
+            let widening = f64::from(0.6 * smooth(0.0, 0.55, t) + 0.4 * t);
             // The cushion by which it sits on the stem.
-            let cushion = 1.0 + 0.22 * f64::from(smooth(0.86, 1.0, t));
+            let cushion = 1.0 + 0.18 * f64::from(smooth(0.88, 1.0, t));
             radii.push((midrib_radius + (stem_radius - midrib_radius) * widening) * cushion);
             if i < PIECES {
                 direction = DVec2::new(turn.cos(), turn.sin()).rotate(direction);
@@ -91,9 +92,11 @@ impl Stalk {
 
     /// The box around it (mm).
     pub(super) fn bounds(&self) -> Rect {
-        let ends = self.points.iter().zip(&self.radii).flat_map(|(&p, &r)| {
-            [p - DVec2::splat(r), p + DVec2::splat(r)]
-        });
+        let ends = self
+            .points
+            .iter()
+            .zip(&self.radii)
+            .flat_map(|(&p, &r)| [p - DVec2::splat(r), p + DVec2::splat(r)]);
         Rect::around(ends)
     }
 
@@ -117,9 +120,8 @@ impl Stalk {
             };
             let [columns, lines] = capsule.pixels(capsule.widest() + 0.5, size, rows.clone());
             for y in lines {
-                let texels = texels.get_or_insert_with(|| {
-                    vec![StalkAt::default(); size * rows.len()]
-                });
+                let texels =
+                    texels.get_or_insert_with(|| vec![StalkAt::default(); size * rows.len()]);
                 for x in columns.clone() {
                     let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                     let (distance2, t) = capsule.nearest(centre);

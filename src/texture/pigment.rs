@@ -18,11 +18,11 @@ parameters! {
     /// A colour: hue, saturation, value.
     pub struct Hsv {
         /// Hue: 0 red, 60 yellow, 120 green. May run past 0 or 360, so that a range can cross red.
-        hue_deg: number(95.0, -360.0..=720.0, "deg"),
+        hue_deg: number(92.0, -360.0..=720.0, "deg"),
         /// Saturation.
-        saturation: number(0.5, 0.0..=1.0, ""),
+        saturation: number(0.46, 0.0..=1.0, ""),
         /// Value (brightness).
-        value: number(0.4, 0.0..=1.0, ""),
+        value: number(0.37, 0.0..=1.0, ""),
     }
 }
 
@@ -184,9 +184,8 @@ impl Pigments {
         let m = self.mottle;
         // The scheme chosen, and the others faintly. Where a colour gives out, tissue makes its
         // front uneven; full strength and the reach stay where they are.
-        let uneven = |w: f32| {
-            (w + 2.0 * m * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0)
-        };
+        let uneven =
+            |w: f32| (w + 2.0 * m * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0);
         let weights = [
             uneven(place.from_veins),
             uneven((1.0 - place.edge.max(0.0) * self.per_spread_mm).max(0.0)),
@@ -206,12 +205,18 @@ impl Pigments {
         let panel = place.major * place.major / (place.major * place.major + 6.0);
         tint.hue += m * (5.0 * broad + 4.0 * middle - 3.0 * panel);
         tint.saturation *= 1.0 + m * (0.18 * middle - 0.10 * broad + 0.10 * fine);
-        let light = 0.22 * broad + 0.20 * middle + 0.13 * fine + 0.16 * (panel - 0.6)
-            + 0.16 * tones[0] + 0.10 * tones[1] + 0.10 * grain;
+        let light = 0.22 * broad
+            + 0.16 * middle
+            + 0.09 * fine
+            + 0.16 * (panel - 0.6)
+            + 0.07 * tones[0]
+            + 0.06 * tones[1]
+            + 0.10 * grain;
         tint.value *= 1.0 + m * light;
         // The fine net, thinner beside grown veins, which take its place there.
         let away = smooth(0.05, 0.35, place.vein);
-        let net = (self.face.lines[0] * lines[0] * away).max(self.face.lines[1] * lines[1]);
+        let net = (self.face.lines[0] * lines[0] * away * (1.0 + 0.7 * fine))
+            .max(self.face.lines[1] * lines[1]);
         tint = tint.towards(self.vein, net * m.sqrt());
         // A thin hardened rim.
         let rim = 1.0 - smooth(0.05, 0.45, place.edge);
@@ -221,7 +226,7 @@ impl Pigments {
         tint.value *= 1.0 - self.face.flank * flank * (1.0 - vein.cover);
         // The vein itself, paler along its crest.
         let shows = vein.radius / (vein.radius + self.face.half_shown_mm);
-        let round = vein.dome / vein.radius.max(1e-6);
+        let round = (vein.dome / vein.radius.max(1e-6)).min(1.0);
         let mut core = self.vein;
         core.value *= 0.90 + 0.16 * round + 0.05 * m * (fine + grain);
         let near = 1.0 - smooth(0.0, self.petiole_reach, *from_base);
@@ -237,7 +242,8 @@ impl Pigments {
         let stem = smooth(0.80, 1.0, stalk.along / length.max(1e-6));
         let mut tint = self.petiole.towards(self.vein, 0.5 * blade);
         tint.hue -= 18.0 * stem;
-        tint.value *= (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.12 * self.mottle * grain);
+        tint.value *=
+            (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.2 * self.mottle * grain);
         tint
     }
 }

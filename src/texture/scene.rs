@@ -33,6 +33,9 @@ const BAND: usize = 32;
 /// A slit is open this wide (mm): the edges of torn tissue shrink back a little.
 const SLIT_MM: f64 = 0.15;
 
+/// Fibres are longer than wide by the inverse of this.
+const FIBRE_STRETCH: f32 = 0.08;
+
 pub(super) struct Scene {
     size: usize,
     frame: TextureFrame,
@@ -267,10 +270,7 @@ fn spans(cover: &[f32], stalk: Option<&[StalkAt]>, width: usize) -> Vec<Range<us
         .collect()
 }
 
-fn bands(
-    side: &mut SideMaps,
-    size: usize,
-) -> impl IndexedParallelIterator<Item = SideRows<'_>> {
+fn bands(side: &mut SideMaps, size: usize) -> impl IndexedParallelIterator<Item = SideRows<'_>> {
     fn chunks<T: Send>(grid: &mut Grid<T>, size: usize) -> rayon::slice::ChunksMut<'_, T> {
         grid.values_mut().par_chunks_mut(BAND * size)
     }
@@ -339,12 +339,19 @@ impl<'a> Walker<'a> {
             }
         }
         let grain = tissue::grain(x, y, self.grain, scene.seed ^ 0x77);
+        // The stalk is made of fibres: its grain is drawn out along it.
+        let fibre = if stalk.cover > 0.0 {
+            tissue::grain(x, stalk.along * FIBRE_STRETCH, 2.0 * self.grain, scene.seed ^ 0x99)
+        } else {
+            0.0
+        };
         let from_base = (x * x + y * y).sqrt();
         Texel {
             scene,
             alpha: byte(1.0 - (1.0 - blade) * (1.0 - stalk.cover)),
             blade,
             stalk,
+            fibre,
             ground: Ground { place, vein, border, grain },
             tissue: Tissue { place, vein, lines, tones, grain, from_base },
         }
@@ -357,6 +364,8 @@ struct Texel<'a> {
     alpha: u8,
     blade: f32,
     stalk: StalkAt,
+    /// Grain of the stalk, −1 – 1.
+    fibre: f32,
     ground: Ground,
     tissue: Tissue,
 }
@@ -407,7 +416,7 @@ impl Texel<'_> {
             let mut rgb = pigments.blade(&self.tissue).srgb();
             if shares[side] > 0.0 {
                 let length = self.scene.stalk_length;
-                let stalk = pigments.stalk(&self.stalk, length, self.tissue.grain).srgb();
+                let stalk = pigments.stalk(&self.stalk, length, self.fibre).srgb();
                 rgb = std::array::from_fn(|k| rgb[k] + (stalk[k] - rgb[k]) * shares[side]);
             }
             let [r, g, b] = rgb.map(byte);

@@ -46,8 +46,7 @@ pub(super) struct Net {
 
 impl Net {
     pub(super) fn new(size: f32, seed: u32) -> Self {
-        let mut net =
-            Self { size, seed, cell: (0, 0), points: [[0.0; 2]; 9], hashes: [0; 9] };
+        let mut net = Self { size, seed, cell: (0, 0), points: [[0.0; 2]; 9], hashes: [0; 9] };
         net.gather((0, 0));
         net
     }

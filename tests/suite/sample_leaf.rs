@@ -5,28 +5,28 @@ use glam::DVec2;
 use venation::geometry::polygon;
 use venation::margin::Margin;
 use venation::seed::{Seed, Stage};
-use venation::veins::{NodeId, Venation, VeinGraph};
+use venation::veins::{NodeId, VeinGraph, Venation};
 
 /// An ovate blade, `length` mm long.
-pub fn ovate(length: f64) -> Margin {
-    let side = |y: f64| 0.62 * length * y.powf(0.62) * (1.0 - y).powf(0.95) * (1.0 - 0.12 * y);
+pub(crate) fn ovate(length: f64) -> Margin {
+    let side = |y: f64| 0.92 * length * y.powf(0.62) * (1.0 - y).powf(0.95) * (1.0 - 0.12 * y);
     let right = (1..80).map(|i| i as f64 / 80.0).map(|y| DVec2::new(side(y), y * length));
     let mut outline = vec![DVec2::ZERO];
     outline.extend(right);
     outline.push(DVec2::new(0.0, length));
-    outline.extend((1..80).rev().map(|i| i as f64 / 80.0).map(|y| {
-        DVec2::new(-0.96 * side(y), y * length)
-    }));
+    outline.extend(
+        (1..80).rev().map(|i| i as f64 / 80.0).map(|y| DVec2::new(-0.96 * side(y), y * length)),
+    );
     Margin::new(outline, 80, Vec::new(), "").expect("an ovate blade is a margin")
 }
 
 /// A blade without veins.
-pub fn bare() -> Venation {
+pub(crate) fn bare() -> Venation {
     Venation::new(VeinGraph::new(), Vec::new(), Vec::new(), 0)
 }
 
 /// Veins that fill `margin`, some 7000 nodes on an 80 mm blade.
-pub fn veins(margin: &Margin) -> Venation {
+pub(crate) fn veins(margin: &Margin) -> Venation {
     let length = margin.length_mm();
     let bounds = margin.bounds();
     let mut rng = Seed(11).stream(Stage::AuxinSources);
@@ -38,8 +38,8 @@ pub fn veins(margin: &Margin) -> Venation {
     for step in 0..STEPS {
         // In the frame of the mature leaf lengths shrink as the leaf grows.
         let scale = (0.12 + 0.88 * f64::from(step) / f64::from(STEPS)).recip();
-        let (spacing, reach, grown) = (0.0125 * length * scale, 0.0105 * length, 0.0042 * length);
-        for _ in 0..60 {
+        let (spacing, reach, grown) = (0.0135 * length * scale, 0.0105 * length, 0.0042 * length);
+        for _ in 0..250 {
             let x = rng.between(bounds.min.x, bounds.max.x);
             let p = DVec2::new(x, rng.between(bounds.min.y, bounds.max.y));
             let crowded = sources.iter().any(|source| source.0.distance(p) < spacing);
@@ -47,7 +47,7 @@ pub fn veins(margin: &Margin) -> Venation {
                 continue;
             }
             let (node, distance) = nearest(&graph, p);
-            if distance > spacing {
+            if distance > 0.9 * spacing {
                 sources.push((p, node, distance));
             }
         }
@@ -57,7 +57,7 @@ pub fn veins(margin: &Margin) -> Venation {
             pulls[*node as usize] += (*p - graph.positions()[*node as usize]).normalize();
         }
         for (node, pull) in pulls.iter().enumerate() {
-            let length = grown * scale.min(2.5);
+            let length = grown * scale.min(2.0);
             let p = graph.positions()[node] + pull.normalize_or_zero() * length;
             if pull.length() < 0.5 || nearest(&graph, p).1 < 0.3 * length {
                 continue;

@@ -134,8 +134,7 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
     let jobs = seeds.into_iter().map(|seed| {
         let spec = leaf_args::resolve(document, seed)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
-        let folder =
-            if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
+        let folder = if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
         let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
         Ok(Job { seed, spec, folder, toml })
     });
@@ -193,7 +192,7 @@ fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result
         problem: None,
         files: files.into_iter().map(|(name, _)| name).collect(),
         nodes: leaf.grown.venation.graph().len(),
-        unreached_sources: leaf.grown.venation.unreached_sources(),
+        unreached_sources: leaf.grown.venation.unreached().total(),
     })
 }
 

@@ -16,8 +16,6 @@ mod extend;
 mod open;
 mod sources;
 
-use glam::DVec2;
-
 use super::graph::VeinGraph;
 use super::{Unreached, VeinError, VeinSpec};
 use crate::growth::{GrowingBlade, GrowthType};
@@ -45,7 +43,8 @@ pub struct Grown {
 /// million.
 const MAX_NODES: usize = 10_000_000;
 
-/// Grows open venation from `roots` (in the frame of the mature leaf).
+/// Grows open venation from the veins of `start` (in the frame of the mature leaf): bare roots, or
+/// guides, which are there from the first step on.
 ///
 /// # Errors
 ///
@@ -53,13 +52,13 @@ const MAX_NODES: usize = 10_000_000;
 pub fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
-    roots: &[DVec2],
+    start: VeinGraph,
     rng: &mut Rng,
     observer: &mut dyn Observer,
 ) -> Result<Grown, VeinError> {
     let mut supply = Supply::new(spec, blade)?;
     let first = *blade.steps().start();
-    let mut nodes = Nodes::new(spec, blade, roots, blade.metric(first));
+    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first));
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }

@@ -17,11 +17,12 @@ const ARCH_AT: f64 = 0.8;
 /// A secondary of full irregularity leaves at up to so many degrees more or less.
 const ANGLE_SPREAD: f64 = 16.0;
 
-/// Secondaries end this share of the width inside the others' border at the base of the blade.
+/// The least part of a secondary on its way to the margin that is worth laying, where it should reach
+/// it.
 const LEAST_CRASPEDODROMOUS: f64 = 0.6;
 
-/// The least part of any other that is worth laying.
-const LEAST: f64 = 0.35;
+/// The same for others.
+const LEAST: f64 = 0.45;
 
 /// What one secondary is to be.
 #[derive(Debug, Clone, Copy)]
@@ -71,10 +72,8 @@ pub(super) fn lay(
         };
         let mut row = Row { spec, teeth, taken: Vec::new(), rim: &mut rim };
         row.both_sides(planter, midrib, count, (first, spec.last_at), rng);
-        let palmate = matches!(
-            spec.primary,
-            PrimaryType::Actinodromous | PrimaryType::Palinactinodromous
-        );
+        let palmate =
+            matches!(spec.primary, PrimaryType::Actinodromous | PrimaryType::Palinactinodromous);
         if palmate {
             for lateral in &primaries.laterals {
                 row.lateral(planter, lateral, between, rng);
@@ -96,14 +95,14 @@ struct Row<'a> {
 impl Row<'_> {
     /// Where `count` secondaries leave between two shares of a vein, with the spacing at each.
     fn places(&self, count: usize, (first, last): (f64, f64)) -> Vec<(f64, f64)> {
-        let weight = |k: usize| {
-            1.0 - self.spec.spacing_change * (k as f64 + 0.5) / count.max(2) as f64
-        };
+        let weight =
+            |k: usize| 1.0 - self.spec.spacing_change * (k as f64 + 0.5) / count.max(2) as f64;
         let total: f64 = (0..count.saturating_sub(1)).map(weight).sum();
         let mut at = first;
         (0..count)
             .map(|k| {
-                let spacing = if total > 0.0 { weight(k) / total * (last - first) } else { last - first };
+                let spacing =
+                    if total > 0.0 { weight(k) / total * (last - first) } else { last - first };
                 let place = (at, spacing);
                 at += spacing;
                 place
@@ -149,7 +148,8 @@ impl Row<'_> {
         let mut highest = [f64::INFINITY; 2];
         for pair in plans.iter().rev() {
             for (s, plan) in pair.iter().enumerate() {
-                let laid = self.secondary(planter, midrib, plan, above[s].as_ref(), &mut highest[s]);
+                let laid =
+                    self.secondary(planter, midrib, plan, above[s].as_ref(), &mut highest[s]);
                 if laid.is_some() {
                     above[s] = laid;
                 }
@@ -252,13 +252,14 @@ impl Row<'_> {
         let least = match (crosses, craspedodromous) {
             (true, _) => 0.02,
             (_, true) => LEAST_CRASPEDODROMOUS,
-            _ => LEAST,
+            _ => LEAST * curve::length(&full) / curve::length(&line),
         };
         let vein = self.attach(planter, parent, share, plan, &line, least)?;
         if vein.hit.is_some() && crosses {
             planter.join_hit(&vein);
         }
-        if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous) {
+        if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous)
+        {
             self.rim.landed(&vein, plan.side);
             return Some(Laid { vein, arch: None });
         }
@@ -273,7 +274,9 @@ impl Row<'_> {
         };
         match spec.secondary {
             SecondaryType::Semicraspedodromous | SecondaryType::FestoonedSemicraspedodromous => {
-                branch_to(planter, &vein, full[full.len() - 1]);
+                if above.is_some() {
+                    branch_to(planter, &vein, full[full.len() - 1]);
+                }
             }
             SecondaryType::Reticulodromous => fork(planter, &vein, plan, 3, 38.0, 0.9),
             SecondaryType::Cladodromous => fork(planter, &vein, plan, 2, 24.0, 0.97),
@@ -283,7 +286,8 @@ impl Row<'_> {
             spec.secondary,
             SecondaryType::FestoonedSemicraspedodromous | SecondaryType::FestoonedBrochidodromous
         );
-        if let (true, Some(arch), Some(upper)) = (festooned, &arch, above.and_then(|a| a.arch.as_ref()))
+        if let (true, Some(arch), Some(upper)) =
+            (festooned, &arch, above.and_then(|a| a.arch.as_ref()))
         {
             festoon(planter, arch, upper, plan);
         }
@@ -337,7 +341,8 @@ impl Row<'_> {
         let [a, b, c] = [rng.unit(), rng.unit(), rng.unit()];
         let count = (spec.intersecondary_count + a).floor() as usize;
         for i in 0..count {
-            let part = (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
+            let part =
+                (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
             let share = lower.share + (upper.share - lower.share) * part;
             let (node, from, ahead) = midrib.at(share);
             let course = Course {

@@ -13,7 +13,7 @@ use super::normals;
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::{Pigments, Tissue};
 use super::relief::{Ground, Relief};
-use super::tissue::{self, Net};
+use super::tissue::{self, Net, smooth};
 use super::{Paint, SideMaps};
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -379,7 +379,10 @@ impl Texel<'_> {
         if stalk == 0.0 || seen <= 0.0 {
             return [0.0; 2];
         }
-        [stalk * (1.0 - blade) / seen, stalk / seen]
+        let (under, over) = (stalk * (1.0 - blade) / seen, stalk / seen);
+        // Its rounded upper end dips into the midrib.
+        let emerged = smooth(0.0, 1.5 * self.stalk.radius, self.stalk.along);
+        [under, under + (over - under) * emerged]
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! `venation compare`: growth types side by side, labelled, with their measures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use venation::document::Document;
@@ -8,7 +8,7 @@ use venation::growth::GrowthType;
 use venation::io::{self, write::Overwrite};
 use venation::observer::Silent;
 use venation::pipeline::{self, Leaf};
-use venation::raster::montage::{self, Panel};
+use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
 use venation::veins::metrics::VeinMetrics;
 
@@ -137,12 +137,15 @@ fn sheet(cells: &[Cell]) -> Result<Vec<u8>, Failure> {
         return Err(Failure::Unexpected("nothing to show".into()));
     };
     let title = format!("{}: growth types, seed {}", first.spec.name, first.seed.0);
-    let picture = montage::sheet(&title, &panels, panels.len());
-    Ok(io::image::encode_picture(&picture))
+    let panel_px = first.textures.front.base_colour.width().min(720);
+    let picture = montage::sheet(&title, &panels, Layout { columns: panels.len(), panel_px });
+    Ok(io::image::colour_png(&picture, &io::image::Caption::default()))
 }
 
-fn save(path: &std::path::Path, bytes: Vec<u8>) -> Result<(), Failure> {
-    io::write::write_file(path, &bytes, Overwrite::Force)
+fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    io::write::write_files(folder, &[(name, bytes)], Overwrite::Force)
         .map_err(|error| Failure::Input(error.to_string()))
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::Serialize;
 use venation::document::{Comments, Document};
-use venation::io::write::Overwrite;
+use venation::io::write::{Overwrite, collisions, write_files};
 use venation::io::{self, FormatKind, LeafFiles, MapKind};
 use venation::pipeline;
 use venation::seed::Seed;
@@ -85,10 +85,8 @@ struct Made {
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    let maps = MapKind::parse_list(&args.maps)
-        .map_err(|problem| Failure::Input(format!("--maps: {problem}")))?;
-    let formats = FormatKind::parse_list(&args.format)
-        .map_err(|problem| Failure::Input(format!("--format: {problem}")))?;
+    let maps = words("--maps", &args.maps, MapKind::ALL, MapKind::word)?;
+    let formats = words("--format", &args.format, FormatKind::ALL, FormatKind::word)?;
     let document = args.leaf.document(context)?;
     let jobs = jobs(args, &document)?;
     let wanted = Wanted { maps, formats };
@@ -101,7 +99,11 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     };
     for (job, overwrite) in &todo {
         let names = io::file_names(&job.spec.name, &wanted.maps, &wanted.formats);
-        io::write::check(&job.folder, &names, *overwrite).map_err(write_failure)?;
+        let files = collisions(&job.folder, names.iter().map(String::as_str));
+        if *overwrite == Overwrite::Refuse && !files.is_empty() {
+            let folder = job.folder.clone();
+            return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
+        }
     }
     let pool = pool(args.threads)?;
     let single = jobs.len() == 1;
@@ -169,14 +171,20 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
 fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     let mut bar = Bar::new(quiet, "");
     let leaf = pipeline::generate(&job.spec, Seed(job.seed), &mut bar)?;
-    let files = LeafFiles {
-        leaf: &leaf,
+    let files = io::encode_leaf(&LeafFiles {
+        name: &job.spec.name,
+        title: &job.spec.title,
+        seed: leaf.seed,
+        margin: &leaf.grown.margin,
+        venation: &leaf.grown.venation,
+        textures: &leaf.textures,
         spec_toml: &job.toml,
+        specularity: job.spec.relief.specularity,
+        roughness: job.spec.relief.roughness,
         maps: &wanted.maps,
         formats: &wanted.formats,
-    };
-    let files = io::encode_leaf(&files);
-    io::write::write(&job.folder, &files, overwrite).map_err(write_failure)?;
+    });
+    write_files(&job.folder, &files, overwrite).map_err(|error| write_failure(&error))?;
     Ok(Made {
         seed: job.seed,
         name: job.spec.name.clone(),
@@ -189,13 +197,32 @@ fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result
     })
 }
 
-fn write_failure(error: io::write::WriteError) -> Failure {
+fn write_failure(error: &io::Error) -> Failure {
     match error {
-        io::write::WriteError::Exists { .. } => {
+        io::Error::WouldOverwrite { .. } => {
             Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))
         }
         _ => Failure::Input(error.to_string()),
     }
+}
+
+/// The items of a comma-separated list of words; `none` is an empty list.
+fn words<T: Copy>(
+    flag: &str,
+    list: &str,
+    all: &[T],
+    word: fn(T) -> &'static str,
+) -> Result<Vec<T>, Failure> {
+    if list.trim() == "none" {
+        return Ok(Vec::new());
+    }
+    let find = |item: &str| {
+        all.iter().copied().find(|&kind| word(kind) == item).ok_or_else(|| {
+            let known: Vec<&str> = all.iter().map(|&kind| word(kind)).collect();
+            Failure::Input(format!("{flag}: `{item}` is none of {}", known.join(", ")))
+        })
+    };
+    list.split(',').map(|item| find(item.trim())).collect()
 }
 
 fn shown(path: &Path) -> String {

@@ -84,7 +84,8 @@ enum Side {
 
 /// Every file but the manifest. Words that were asked for twice count once.
 fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String, Content)> {
-    let mut entries = Vec::new();
+    // The settings come first: a run that was killed can tell from them what it was making.
+    let mut entries = vec![(SPEC_FILE.to_owned(), Content::Spec)];
     for (folder, side) in [("", Side::Front), ("back/", Side::Back)] {
         for &map in MapKind::ALL.iter().filter(|map| maps.contains(map)) {
             let path = format!("{folder}{stem}_{}.png", map.suffix());
@@ -101,7 +102,6 @@ fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String,
             FormatKind::Json => entries.push((format!("{stem}_veins.json"), Content::Graph)),
         }
     }
-    entries.push((SPEC_FILE.to_owned(), Content::Spec));
     entries
 }
 

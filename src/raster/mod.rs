@@ -1,12 +1,17 @@
 //! Pixels that have never heard of leaves.
 
+pub mod chamfer;
 pub mod color;
+pub mod components;
 pub mod contour;
 pub mod coverage;
 pub mod distance;
 pub mod draw;
 pub mod flood_fill;
 pub mod montage;
+pub mod smooth;
+pub mod thinning;
+pub mod threshold;
 
 /// A rectangle of values, row 0 at the top.
 #[derive(Debug, Clone, PartialEq)]

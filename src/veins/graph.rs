@@ -64,6 +64,13 @@ impl VeinGraph {
         id
     }
 
+    /// The same graph with every node moved. `place` keeps positions distinct.
+    #[must_use]
+    pub fn mapped(mut self, place: impl Fn(DVec2) -> DVec2) -> Self {
+        self.positions.iter_mut().for_each(|p| *p = place(*p));
+        self
+    }
+
     /// Records that the veins at `a` and `b` have met.
     pub fn join(&mut self, a: NodeId, b: NodeId) {
         self.joins.push((a, b));

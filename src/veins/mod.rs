@@ -8,10 +8,14 @@ pub mod graph;
 pub mod orders;
 pub mod widths;
 
+use glam::DVec2;
+
+use crate::geometry::polygon;
 use crate::growth::GrowingBlade;
+use crate::margin::Margin;
 use crate::observer::Observer;
-use crate::parameter::{parameters, words};
-use crate::seed::Seed;
+use crate::parameter::{Kind, Parameters, parameters, words};
+use crate::seed::{Seed, Stage};
 pub use graph::{NodeId, VeinGraph, VeinKind};
 
 words! {
@@ -60,8 +64,31 @@ pub struct Venation {
     graph: VeinGraph,
     radii: Vec<f64>,
     orders: Vec<u8>,
-    /// How many sources no vein reached.
-    unreached_sources: usize,
+    sources: usize,
+    unreached: Unreached,
+}
+
+/// The auxin sources that no vein reached, by reason.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Unreached {
+    /// Given places outside the blade.
+    pub outside: usize,
+    /// Places that the margin of a bud has not passed.
+    pub too_young: usize,
+    /// Farther from every vein than the attraction distance.
+    pub out_of_reach: usize,
+    /// The margin or a cut hides them from the nearest vein.
+    pub hidden: usize,
+    /// Veins were on their way when growth ended, or could not come closer.
+    pub unfinished: usize,
+}
+
+impl Unreached {
+    /// All of them.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.outside + self.too_young + self.out_of_reach + self.hidden + self.unfinished
+    }
 }
 
 impl Venation {
@@ -110,25 +137,117 @@ impl Venation {
         }
     }
 
-    /// How many auxin sources no vein reached.
+    /// How many auxin sources there were in all.
     #[must_use]
-    pub fn unreached_sources(&self) -> usize {
-        self.unreached_sources
+    pub fn sources(&self) -> usize {
+        self.sources
+    }
+
+    /// The auxin sources that no vein reached.
+    #[must_use]
+    pub fn unreached(&self) -> Unreached {
+        self.unreached
+    }
+
+    /// The first guarantee that does not hold inside `margin`, in words; `None` when all do. For
+    /// tests.
+    #[must_use]
+    pub fn check(&self, margin: &Margin) -> Option<String> {
+        if let Some(broken) = self.graph.check() {
+            return Some(broken);
+        }
+        let n = self.graph.len();
+        if self.radii.len() != n || self.orders.len() != n {
+            return Some("not one radius and one order for each node".into());
+        }
+        let odd = |node: &usize| !(self.radii[*node] > 0.0 && self.orders[*node] > 0);
+        if let Some(node) = (0..n).find(odd) {
+            return Some(format!("node {node} has no radius or no order"));
+        }
+        let shrinks = |&(parent, child): &(NodeId, NodeId)| {
+            let (parent, child) = (parent as usize, child as usize);
+            self.radii[parent] < self.radii[child] || self.orders[parent] > self.orders[child]
+        };
+        if let Some((parent, child)) = self.graph.edges().find(shrinks) {
+            return Some(format!(
+                "node {parent} is thinner or of a higher order than its child {child}"
+            ));
+        }
+        let outside = |p: &&DVec2| !polygon::contains(margin.outline(), **p);
+        self.graph.positions().iter().find(outside).map(|p| format!("a node outside, at {p}"))
     }
 }
 
-/// Grows the vein pattern of a leaf from `roots` (leaf space, mm; usually the base alone).
+/// Grows the vein pattern of a leaf from the base of its blade, in the size of the finished leaf.
 ///
 /// # Errors
 ///
 /// [`VeinError`] names the key, the value and the limit.
 pub fn grow(
-    _spec: &VeinSpec,
-    _blade: &GrowingBlade,
-    _seed: Seed,
-    _observer: &mut dyn Observer,
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    seed: Seed,
+    observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
-    unimplemented!()
+    grow_from(spec, blade, &[blade.root()], seed, observer)
+}
+
+/// The same from any roots, in the frame of the mature leaf; those outside the first blade grow
+/// nothing.
+///
+/// # Errors
+///
+/// As [`grow`].
+pub fn grow_from(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    roots: &[DVec2],
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Venation, VeinError> {
+    check(spec)?;
+    let grown = match spec.algorithm {
+        Algorithm::AuxinOpen => {
+            auxin::grow(spec, blade, roots, &mut seed.stream(Stage::AuxinSources), observer)?
+        }
+    };
+    let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
+    let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
+    let orders = orders::by_width(&graph, &radii);
+    Ok(Venation { graph, radii, orders, sources: grown.sources, unreached: grown.unreached })
+}
+
+/// Refuses settings under which growth would make no sense or never end.
+fn check(spec: &VeinSpec) -> Result<(), VeinError> {
+    let defaults = VeinSpec::parameters();
+    let value = |key: &str| match key {
+        "spawn_rate" => spec.spawn_rate,
+        "source_spawn_distance_mm" => spec.source_spawn_distance_mm,
+        "vein_spawn_distance_mm" => spec.vein_spawn_distance_mm,
+        "kill_distance_mm" => spec.kill_distance_mm,
+        "node_step_mm" => spec.node_step_mm,
+        "attraction_distance_mm" => spec.attraction_distance_mm,
+        "tip_radius_mm" => spec.tip_radius_mm,
+        _ => spec.murray_exponent,
+    };
+    for parameter in &defaults {
+        let Kind::Number { min, max, .. } = parameter.kind else { continue };
+        let value = value(&parameter.key);
+        if !(min..=max).contains(&value) {
+            let key = format!("veins.{}", parameter.key);
+            return Err(VeinError::setting(key, value, format!("must be from {min} to {max}")));
+        }
+    }
+    // A vein steps over a source that is nearer than its step; half a step beyond, it must count as
+    // reached, or the vein would turn round for ever.
+    let least = spec.node_step_mm / 2.0;
+    if spec.kill_distance_mm < least {
+        let problem = format!(
+            "must be at least half of veins.node_step_mm ({least}): veins would step over the sources"
+        );
+        return Err(VeinError::setting("veins.kill_distance_mm", spec.kill_distance_mm, problem));
+    }
+    Ok(())
 }
 
 /// Why veins could not be grown.
@@ -139,10 +258,16 @@ pub enum VeinError {
     #[error("{key} = {value} {problem}")]
     Setting {
         /// The key.
-        key: &'static str,
+        key: String,
         /// Its value.
         value: f64,
         /// What is wrong and what to change.
         problem: String,
     },
+}
+
+impl VeinError {
+    fn setting(key: impl Into<String>, value: f64, problem: impl Into<String>) -> Self {
+        Self::Setting { key: key.into(), value, problem: problem.into() }
+    }
 }

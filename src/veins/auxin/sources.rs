@@ -1,1 +1,166 @@
-//! (to be written)
+//! Where auxin sources come from: darts that fall where there is room, or given places.
+
+use glam::DVec2;
+
+use super::extend::Nodes;
+use super::open::Calls;
+use crate::geometry::point_grid::PointGrid;
+use crate::geometry::scatter::PolygonScatter;
+use crate::growth::{GrowingBlade, Metric};
+use crate::seed::Rng;
+use crate::veins::{VeinError, VeinSpec};
+
+/// More darts than this are a slip of the keyboard: Foster's longest run throws 3 million, and each
+/// costs about a tenth of a microsecond.
+const MAX_DARTS: f64 = 3e7;
+
+/// The sources still to come.
+pub(super) struct Supply<'a> {
+    blade: &'a GrowingBlade,
+    spacing_mm: f64,
+    vein_spacing_mm: f64,
+    rate: f64,
+    scatter: PolygonScatter,
+    /// Living sources, for their spacing; only where darts fall.
+    spaced: PointGrid,
+    /// Part of a dart left over from the last step.
+    fraction: f64,
+    /// Given places, or those of all darts where they fall before the first step, with their step of
+    /// birth, latest first.
+    waiting: Vec<(u64, DVec2)>,
+    given: bool,
+    started: bool,
+    outside: usize,
+}
+
+impl<'a> Supply<'a> {
+    pub(super) fn new(spec: &VeinSpec, blade: &'a GrowingBlade) -> Result<Self, VeinError> {
+        let steps = blade.steps().count() as f64;
+        let given = !spec.sources_mm.is_empty();
+        if !given && spec.spawn_rate * steps > MAX_DARTS {
+            let problem = format!(
+                "over {steps} steps throws more than {MAX_DARTS:.0} darts; lower it or growth.total_steps"
+            );
+            return Err(VeinError::setting("veins.spawn_rate", spec.spawn_rate, problem));
+        }
+        let first = blade.metric(*blade.steps().start());
+        let cell = first.reach(first.length(spec.source_spawn_distance_mm)).max_element();
+        let mut supply = Self {
+            blade,
+            spacing_mm: spec.source_spawn_distance_mm,
+            vein_spacing_mm: spec.vein_spawn_distance_mm,
+            rate: spec.spawn_rate,
+            scatter: PolygonScatter::new(blade.mature().outline()),
+            spaced: PointGrid::new(blade.mature().bounds(), cell),
+            fraction: 0.0,
+            waiting: Vec::new(),
+            given,
+            started: false,
+            outside: 0,
+        };
+        for (i, place) in spec.sources_mm.iter().enumerate() {
+            let p = DVec2::from(*place);
+            if !p.is_finite() {
+                let problem = "is the index of a point that is not made of finite numbers";
+                return Err(VeinError::setting("veins.sources_mm", i as f64, problem));
+            }
+            supply.wait_for(p);
+        }
+        Ok(supply)
+    }
+
+    /// Keeps a place for the step in which the margin passes it.
+    fn wait_for(&mut self, p: DVec2) {
+        if !self.blade.covers(p) {
+            self.outside += 1;
+            return;
+        }
+        // A place the margin does not pass in time waits for ever.
+        self.waiting.push((self.blade.birth_step(p).unwrap_or(u64::MAX), p));
+    }
+
+    /// Adds the sources of one step to `calls`.
+    pub(super) fn seed(
+        &mut self,
+        step: u64,
+        metric: Metric,
+        rng: &mut Rng,
+        calls: &mut Calls,
+        nodes: &Nodes,
+    ) -> Result<(), VeinError> {
+        let darts_fall = !self.given && self.blade.carries_tissue();
+        if !self.started {
+            self.started = true;
+            if !self.given && !darts_fall {
+                // All darts fall on the mature blade before the first step.
+                let steps = self.blade.steps().count() as f64;
+                for _ in 0..(self.rate * steps) as u64 {
+                    if let Some(p) = self.throw(metric, rng, nodes) {
+                        self.spaced.push(p);
+                        self.wait_for(p);
+                    }
+                }
+            }
+            // Stable: those of one step keep their order. Latest first, so that they can be popped.
+            self.waiting.reverse();
+            self.waiting.sort_by_key(|&(birth, _)| std::cmp::Reverse(birth));
+        }
+        while let Some(&(birth, p)) = self.waiting.last()
+            && birth <= step
+        {
+            self.waiting.pop();
+            calls.add(p, nodes, metric);
+        }
+        if darts_fall {
+            let cell = metric.reach(metric.length(self.spacing_mm)).max_element();
+            self.spaced.refine(cell);
+            self.fraction += self.rate * self.blade.scale_at(step).element_product();
+            let darts = self.fraction as u64;
+            self.fraction -= darts as f64;
+            for _ in 0..darts {
+                if let Some(p) = self.throw(metric, rng, nodes) {
+                    self.spaced.push(p);
+                    calls.add(p, nodes, metric);
+                }
+            }
+        }
+        calls.index_newborn();
+        Ok(())
+    }
+
+    /// One dart; nothing when it falls too near to a source or a vein.
+    fn throw(&self, metric: Metric, rng: &mut Rng, nodes: &Nodes) -> Option<DVec2> {
+        let (u, v) = (rng.unit(), rng.unit());
+        let p = self.scatter.point(u, v);
+        let spacing = metric.length(self.spacing_mm);
+        let crowded = spacing > 0.0
+            && self.spaced.any_near(p, metric.reach(spacing), |_, q| {
+                metric.distance_squared(p, q) < spacing * spacing
+            });
+        let free = !crowded && !nodes.any_within(p, metric.length(self.vein_spacing_mm), metric);
+        free.then_some(p)
+    }
+
+    /// Makes room where sources died.
+    pub(super) fn forget(&mut self, dead: &[u32]) {
+        if !self.given && self.blade.carries_tissue() {
+            dead.iter().for_each(|&id| self.spaced.remove(id));
+        }
+    }
+
+    /// Whether no source is to come.
+    pub(super) fn is_exhausted(&self) -> bool {
+        let darts_fall = !self.given && self.blade.carries_tissue() && self.rate > 0.0;
+        !darts_fall && self.waiting.iter().all(|&(birth, _)| birth == u64::MAX)
+    }
+
+    /// Given places that lie outside the blade.
+    pub(super) fn outside(&self) -> usize {
+        self.outside
+    }
+
+    /// Places that the margin never passed.
+    pub(super) fn unborn(&self) -> usize {
+        self.waiting.len()
+    }
+}

@@ -1,0 +1,159 @@
+//! New tissue at the margin only; the interior stays where it is.
+//!
+//! Source: Foster, marginal growth. At scale s the blade is the part of the mature one that the
+//! scaled outline has passed by then. For an outline that is star-shaped about its base this is the
+//! scaled outline itself. Otherwise (oak, curled lobes) a sinus of the young outline would sweep over
+//! tissue that already stands there; tissue does not vanish, so everything passed so far counts: the
+//! scaled *star hull* (all points between the base and the outline), cut by the mature outline.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use crate::geometry::polygon;
+use crate::geometry::segments::SegmentIndex;
+use crate::margin::{Margin, MarginError};
+
+/// One sector of the star hull: between two angles one edge is the farthest from the base.
+#[derive(Debug, Clone, Copy)]
+struct Sector {
+    /// Angle at which it starts (radians, in 0..2π).
+    from: f64,
+    /// The farthest edge there; none where the ray meets no tissue.
+    edge: Option<(DVec2, DVec2)>,
+}
+
+/// The star hull of an outline about the origin.
+#[derive(Debug, Clone)]
+pub(super) struct Sweep {
+    sectors: Vec<Sector>,
+    index: SegmentIndex,
+    plain: bool,
+}
+
+impl Sweep {
+    pub(super) fn new(outline: &[DVec2]) -> Self {
+        let mut angles: Vec<f64> = outline[1..].iter().map(|p| angle(*p)).collect();
+        angles.sort_by(f64::total_cmp);
+        angles.dedup();
+        let sectors: Vec<Sector> = (0..angles.len())
+            .map(|i| {
+                let next = angles.get(i + 1).copied().unwrap_or(angles[0] + TAU);
+                let middle = (angles[i] + next) * 0.5;
+                let ray = DVec2::new(libm::cos(middle), libm::sin(middle));
+                // Edges at the base run along the ray and reach no sector's middle.
+                let edge = polygon::edges(outline)
+                    .filter_map(|(a, b)| Some((crossing(ray, a, b)?, (a, b))))
+                    .max_by(|x, y| x.0.total_cmp(&y.0))
+                    .map(|(_, edge)| edge);
+                Sector { from: angles[i], edge }
+            })
+            .collect();
+        let hull = hull(&sectors);
+        let index = SegmentIndex::of_polygon(&hull);
+        let area = polygon::signed_area(outline);
+        let plain = (polygon::signed_area(&hull) - area).abs() <= 1e-9 * area;
+        Self { sectors, index, plain }
+    }
+
+    /// Whether the hull is the outline itself.
+    pub(super) fn is_plain(&self) -> bool {
+        self.plain
+    }
+
+    /// The least scale at which the hull holds `p`: 0 at the base, 1 on the outline, more outside.
+    pub(super) fn scale_reaching(&self, p: DVec2) -> f64 {
+        if p == DVec2::ZERO {
+            return 0.0;
+        }
+        let at = angle(p);
+        let after = self.sectors.partition_point(|sector| sector.from <= at);
+        let sector = &self.sectors[(after + self.sectors.len() - 1) % self.sectors.len()];
+        sector.edge.and_then(|(a, b)| on_line(p, a, b)).map_or(f64::INFINITY, |reach| 1.0 / reach)
+    }
+
+    /// Whether the hull at scale `s` crosses the segment a–b.
+    pub(super) fn touches(&self, a: DVec2, b: DVec2, s: f64) -> bool {
+        self.index.touches(a / s, b / s)
+    }
+
+    /// The blade at scale `s`: the part of `mature` inside the scaled hull that hangs together with
+    /// the base.
+    pub(super) fn margin(&self, mature: &Margin, s: f64) -> Result<Margin, MarginError> {
+        let inside = |p: DVec2| self.scale_reaching(p) <= s;
+        let cuts = mature.cuts().iter().flat_map(|line| runs_inside(line, inside)).collect();
+        let hint = "use another growth.type, or growth.scale = 1";
+        if self.plain {
+            let outline = mature.outline().iter().map(|p| *p * s).collect();
+            return Margin::new(outline, mature.apex_index(), cuts, hint);
+        }
+        // Whatever the hull has not reached yet is drawn back to it along its ray.
+        let drawn_back = |p: &DVec2| *p * (s / self.scale_reaching(*p)).min(1.0);
+        let outline = mature.outline().iter().map(drawn_back).collect();
+        Margin::new(outline, mature.apex_index(), cuts, hint)
+    }
+}
+
+fn angle(p: DVec2) -> f64 {
+    let angle = libm::atan2(p.y, p.x);
+    if angle < 0.0 { angle + TAU } else { angle }
+}
+
+/// How many times `ray` reaches to the line a–b; `None` when it runs away from it or beside it.
+fn on_line(ray: DVec2, a: DVec2, b: DVec2) -> Option<f64> {
+    let across = ray.perp_dot(b - a);
+    let reach = a.perp_dot(b - a) / across;
+    (reach.is_finite() && reach > 0.0).then_some(reach)
+}
+
+/// The same for the segment.
+fn crossing(ray: DVec2, a: DVec2, b: DVec2) -> Option<f64> {
+    ((ray.perp_dot(a) > 0.0) != (ray.perp_dot(b) > 0.0)).then(|| on_line(ray, a, b)).flatten()
+}
+
+/// The outline of the star hull, anticlockwise.
+fn hull(sectors: &[Sector]) -> Vec<DVec2> {
+    let mut hull: Vec<DVec2> = Vec::with_capacity(2 * sectors.len());
+    let mut push = |p: DVec2| {
+        if hull.last().is_none_or(|last| last.distance_squared(p) > 0.0) {
+            hull.push(p);
+        }
+    };
+    for (i, sector) in sectors.iter().enumerate() {
+        let Some((a, b)) = sector.edge else {
+            push(DVec2::ZERO);
+            continue;
+        };
+        let to = sectors[(i + 1) % sectors.len()].from;
+        for angle in [sector.from, to] {
+            let ray = DVec2::new(libm::cos(angle), libm::sin(angle));
+            push(on_line(ray, a, b).map_or(a, |reach| ray * reach));
+        }
+    }
+    hull
+}
+
+/// The stretches of a line inside, cut where it leaves; bisection settles where that is.
+fn runs_inside(line: &[DVec2], inside: impl Fn(DVec2) -> bool) -> Vec<Vec<DVec2>> {
+    let mut runs: Vec<Vec<DVec2>> = Vec::new();
+    let mut run: Vec<DVec2> = Vec::new();
+    for (i, &p) in line.iter().enumerate() {
+        let is_in = inside(p);
+        if i > 0 && is_in != inside(line[i - 1]) {
+            let (mut held, mut lost) = if is_in { (p, line[i - 1]) } else { (line[i - 1], p) };
+            for _ in 0..50 {
+                let middle = held.midpoint(lost);
+                if inside(middle) { held = middle } else { lost = middle }
+            }
+            run.push(held);
+        }
+        if is_in {
+            run.push(p);
+        } else if !run.is_empty() {
+            runs.push(std::mem::take(&mut run));
+        }
+    }
+    runs.push(run);
+    runs.retain(|run| run.len() > 1);
+    runs
+}

@@ -1,0 +1,166 @@
+//! Expected pictures, which are also the README's, so that neither goes stale.
+//!
+//! `BLESS=1 cargo test golden` rewrites them. A picture that differs leaves what was made and a
+//! difference picture in the folder that the message names.
+
+use std::path::{Path, PathBuf};
+
+use venation::document::Document;
+use venation::io::image::{Caption, colour_png};
+use venation::io::outline::{self, OutlineKind, OutlineOptions};
+use venation::observer::Silent;
+use venation::pipeline::{self, Leaf};
+use venation::presets::{self, PRESETS};
+use venation::raster::Grid;
+use venation::raster::montage::{self, Layout, Panel};
+use venation::seed::Seed;
+
+type Picture = Grid<[u8; 4]>;
+
+/// A channel may be off by this much: rounding of the last bit in another build.
+const CHANNEL_TOLERANCE: u8 = 3;
+
+/// This share of the pixels may be off by more: a speck at an edge.
+const PIXEL_TOLERANCE: f64 = 5e-4;
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("{name}.png"))
+}
+
+fn read(path: &Path) -> Option<Picture> {
+    let picture = image::open(path).ok()?.into_rgba8();
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let values = picture.pixels().map(|pixel| pixel.0).collect();
+    Some(Grid::from_values(width, height, values))
+}
+
+/// Asserts that a picture is the expected one, or makes it so.
+fn compare(name: &str, made: &Picture) {
+    let path = golden(name);
+    let png = colour_png(made, &Caption::default());
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().expect("tests/golden")).expect("the folder");
+        std::fs::write(&path, png).expect("the golden picture can be written");
+        return;
+    }
+    let failed = |why: &str| {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+        std::fs::create_dir_all(&folder).expect("a folder for what was made");
+        std::fs::write(folder.join(format!("{name}.made.png")), &png).expect("what was made");
+        panic!("{name}: {why}; see {} (BLESS=1 accepts it)", folder.display());
+    };
+    let Some(expected) = read(&path) else { failed("no expected picture") };
+    if (expected.width(), expected.height()) != (made.width(), made.height()) {
+        failed("another size");
+    }
+    let off = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|c| a[c].abs_diff(b[c])).max();
+    let differences: Vec<u8> =
+        expected.values().iter().zip(made.values()).filter_map(off).collect();
+    let wrong = differences.iter().filter(|d| **d > CHANNEL_TOLERANCE).count();
+    if wrong as f64 > PIXEL_TOLERANCE * differences.len() as f64 {
+        let shown = differences.iter().map(|d| [d.saturating_mul(8), 0, 0, 255]).collect();
+        let shown = Grid::from_values(made.width(), made.height(), shown);
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden");
+        std::fs::create_dir_all(&folder).expect("a folder for what was made");
+        let bytes = colour_png(&shown, &Caption::default());
+        std::fs::write(folder.join(format!("{name}.difference.png")), bytes).expect("differences");
+        failed(&format!("{wrong} of {} pixels differ", differences.len()));
+    }
+}
+
+fn document(preset: &str, settings: &[&str]) -> Document {
+    let mut document = presets::find(preset).expect("a preset").document().expect("it parses");
+    for setting in settings {
+        document.set(setting, "golden").expect("a valid setting");
+    }
+    document
+}
+
+fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
+    let mut document = document.clone();
+    document.set(&format!("texture.size_px={size}"), "golden").expect("a size");
+    let spec = document.resolve(Seed(seed)).expect("it resolves");
+    pipeline::generate(&spec, Seed(seed), &mut Silent).expect("a leaf")
+}
+
+fn panel(picture: Picture, label: &str) -> Panel {
+    Panel { picture, label: label.to_owned(), notes: Vec::new() }
+}
+
+/// Normals and heights as pictures in the blade's coverage.
+fn shown<T: Copy>(map: &Grid<T>, cover: &Picture, rgb: impl Fn(T) -> [u8; 3]) -> Picture {
+    let values = map.values().iter().zip(cover.values()).map(|(&v, c)| {
+        let [r, g, b] = rgb(v);
+        [r, g, b, c[3]]
+    });
+    Grid::from_values(map.width(), map.height(), values.collect())
+}
+
+fn normals(side: &venation::texture::SideMaps) -> Picture {
+    shown(&side.normal, &side.base_colour, |n| n)
+}
+
+fn heights(side: &venation::texture::SideMaps) -> Picture {
+    shown(&side.height, &side.base_colour, |h| [(h >> 8) as u8; 3])
+}
+
+fn sheet(title: &str, panels: &[Panel], columns: usize, panel_px: usize) -> Picture {
+    montage::sheet(title, panels, Layout { columns, panel_px })
+}
+
+/// A leaf in the outline of a file among the fixtures.
+fn in_outline(preset: &str, file: &str, settings: &[&str]) -> Document {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines").join(file);
+    let options =
+        OutlineOptions { kind: OutlineKind::Auto, root: None, y_up: false, length_mm: 70.0 };
+    let imported = outline::import(&path, &options).expect("the fixture imports");
+    let mut document = document(preset, settings);
+    use venation::document::Value;
+    document.insert("margin.kind", Value::Text("polygon".into()), "golden");
+    document.insert("margin.polygon_mm", Value::Points(imported.polygon_mm), "golden");
+    document.insert("margin.cuts_mm", Value::Lines(imported.cuts_mm), "golden");
+    document
+}
+
+#[test]
+fn golden_presets_front_and_back() {
+    let mut panels = Vec::new();
+    for preset in PRESETS {
+        let leaf = leaf(&document(preset.name, &[]), 1, 512);
+        let name = format!("{} ({})", preset.common, preset.name);
+        panels.push(panel(leaf.textures.front.base_colour, &name));
+        panels.push(panel(leaf.textures.back.base_colour, "back"));
+    }
+    compare("readme_presets", &sheet("presets", &panels, 4, 384));
+}
+
+#[test]
+fn golden_colour_types() {
+    let types = ["uniform", "from-veins", "from-edges", "speckled"];
+    let panels: Vec<Panel> = types
+        .iter()
+        .map(|word| {
+            let settings = [
+                &format!("colour.type={word}")[..],
+                "colour.spread_mm=7",
+                "colour.speckle_count=120",
+            ];
+            let leaf = leaf(&document("lilac", &settings), 3, 512);
+            panel(leaf.textures.front.base_colour, word)
+        })
+        .collect();
+    compare("readme_colour", &sheet("colour types", &panels, 4, 384));
+}
+
+#[test]
+fn golden_relief_of_both_sides() {
+    let leaf = leaf(&document("beech", &[]), 2, 512);
+    let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let panels = [
+        panel(heights(front), "front, height"),
+        panel(normals(front), "front, normal"),
+        panel(heights(back), "back, height"),
+        panel(normals(back), "back, normal"),
+    ];
+    compare("readme_relief", &sheet("relief", &panels, 4, 384));
+}

@@ -134,8 +134,7 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
     let jobs = seeds.into_iter().map(|seed| {
         let spec = leaf_args::resolve(document, seed)?;
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
-        let folder =
-            if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
+        let folder = if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
         let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
         Ok(Job { seed, spec, folder, toml })
     });

@@ -113,7 +113,9 @@ fn read_document(leaf: &str) -> Result<Document, Failure> {
     let fail = |problem: String| Failure::Input(format!("{leaf}: {problem}"));
     let size = std::fs::metadata(path).map_err(|e| fail(e.to_string()))?.len();
     if size > LARGEST_TOML {
-        return Err(fail(format!("{size} bytes are too many for a TOML file (limit {LARGEST_TOML})")));
+        return Err(fail(format!(
+            "{size} bytes are too many for a TOML file (limit {LARGEST_TOML})"
+        )));
     }
     let bytes = std::fs::read(path).map_err(|e| fail(e.to_string()))?;
     let text = String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".into()))?;

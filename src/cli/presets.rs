@@ -31,7 +31,8 @@ enum PresetCommand {
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
     if let Some(PresetCommand::Show { name }) = &args.command {
-        let preset = presets::find(name).ok_or_else(|| Failure::Input(super::leaf_args::unknown(name)))?;
+        let preset =
+            presets::find(name).ok_or_else(|| Failure::Input(super::leaf_args::unknown(name)))?;
         let text = preset.document()?.to_toml(Comments::Full);
         write!(context.stdout, "# {}: {}\n{text}", preset.common, preset.about)?;
         return Ok(());

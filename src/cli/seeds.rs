@@ -15,7 +15,8 @@ pub(crate) fn parse(text: &str) -> Result<Vec<u64>, String> {
     let mut column = 1;
     for part in text.split(',') {
         let fail = |problem: &str| format!("column {column}: `{part}` {problem}");
-        let number = |text: &str| text.trim().parse::<u64>().map_err(|_| fail("is not a seed range"));
+        let number =
+            |text: &str| text.trim().parse::<u64>().map_err(|_| fail("is not a seed range"));
         let (range, step) = match part.split_once(':') {
             Some((range, step)) => (range, number(step)?),
             None => (part, 1),

@@ -73,8 +73,7 @@ fn an_existing_leaf_is_not_overwritten_unless_forced() {
 #[test]
 fn skip_existing_completes_a_killed_batch_and_refuses_strangers() {
     let folder = fresh();
-    let arguments =
-        small(&["generate", "beech", "--seeds", "1-3", "-o", "out", "--skip-existing"]);
+    let arguments = small(&["generate", "beech", "--seeds", "1-3", "-o", "out", "--skip-existing"]);
     succeed(folder.path(), &arguments);
     let out = folder.path().join("out");
     let whole = contents(&out);
@@ -124,8 +123,16 @@ fn an_outline_keeps_no_path_and_its_leaf_toml_gives_the_same_bytes() {
     succeed(
         folder.path(),
         &small(&[
-            "generate", "beech", "--outline", "my-outline.csv", "--root", "100,300", "--length-mm",
-            "50", "-o", "one",
+            "generate",
+            "beech",
+            "--outline",
+            "my-outline.csv",
+            "--root",
+            "100,300",
+            "--length-mm",
+            "50",
+            "-o",
+            "one",
         ]),
     );
     let toml = std::fs::read_to_string(folder.path().join("one/leaf.toml")).unwrap();
@@ -141,7 +148,16 @@ fn given_sources_are_all_the_sources_there_are() {
     let folder = fresh();
     std::fs::write(folder.path().join("s.csv"), "x,y\n5,40\n-5,40\n0,60\n").unwrap();
     let arguments = small(&[
-        "generate", "beech", "--sources", "s.csv", "--growth", "none", "-o", "out", "--format", "json",
+        "generate",
+        "beech",
+        "--sources",
+        "s.csv",
+        "--growth",
+        "none",
+        "-o",
+        "out",
+        "--format",
+        "json",
     ]);
     succeed(folder.path(), &arguments);
     let text =
@@ -260,8 +276,10 @@ fn compare_writes_a_sheet_and_a_table() {
 #[test]
 fn bench_prints_a_table_and_the_exponent() {
     let folder = fresh();
-    let out =
-        succeed(folder.path(), &["bench", "--auxins", "200,400,800", "--csv", "b.csv", "--runs", "1"]);
+    let out = succeed(
+        folder.path(),
+        &["bench", "--auxins", "200,400,800", "--csv", "b.csv", "--runs", "1"],
+    );
     assert!(out.contains("exponent"), "{out}");
     let table = std::fs::read_to_string(folder.path().join("b.csv")).unwrap();
     assert_eq!(table.lines().count(), 4, "{table}");

@@ -265,9 +265,7 @@ impl Symmetry {
 /// Indices of the corners of the convex hull of an anticlockwise ring, in order (Andrew, 1979).
 fn convex_hull(ring: &[DVec2]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..ring.len()).collect();
-    order.sort_by(|&i, &j| {
-        (ring[i].x.total_cmp(&ring[j].x)).then(ring[i].y.total_cmp(&ring[j].y))
-    });
+    order.sort_by(|&i, &j| (ring[i].x.total_cmp(&ring[j].x)).then(ring[i].y.total_cmp(&ring[j].y)));
     let mut hull: Vec<usize> = Vec::new();
     for upper in [false, true] {
         let floor = hull.len();

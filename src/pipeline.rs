@@ -40,7 +40,7 @@ pub fn grow(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<
     let margin = margin::build(&spec.margin)?;
     let blade = GrowingBlade::new(margin, &spec.growth)?;
     let venation = veins::grow(&spec.veins, &blade, seed, observer)?;
-    Ok(Grown { margin: blade.finished(), venation })
+    Ok(Grown { margin: blade.finished().clone(), venation })
 }
 
 /// Paints a grown leaf.

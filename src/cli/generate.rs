@@ -192,7 +192,7 @@ fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result
         problem: None,
         files: files.into_iter().map(|(name, _)| name).collect(),
         nodes: leaf.grown.venation.graph().len(),
-        unreached_sources: leaf.grown.venation.unreached_sources(),
+        unreached_sources: leaf.grown.venation.unreached().total(),
     })
 }
 

@@ -214,7 +214,7 @@ impl LeafFiles<'_> {
             apex: uv_from_mm.place(self.margin.apex()),
             uv_from_mm,
             nodes: self.venation.graph().len(),
-            unreached_sources: self.venation.unreached_sources(),
+            unreached_sources: self.venation.unreached().total(),
             files,
         }
     }

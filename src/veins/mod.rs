@@ -5,6 +5,7 @@
 
 pub mod auxin;
 pub mod graph;
+pub mod metrics;
 pub mod orders;
 pub mod widths;
 
@@ -64,6 +65,7 @@ pub struct Venation {
     graph: VeinGraph,
     radii: Vec<f64>,
     orders: Vec<u8>,
+    nodes_after_step: Vec<u32>,
     sources: usize,
     unreached: Unreached,
 }
@@ -92,21 +94,18 @@ impl Unreached {
 }
 
 impl Venation {
-    /// A graph whose nodes have these radii and orders.
+    /// A graph whose nodes have these radii and orders, grown at once and from no sources.
     ///
     /// # Panics
     ///
     /// If there is not one radius and one order for each node.
     #[must_use]
-    pub fn new(
-        graph: VeinGraph,
-        radii: Vec<f64>,
-        orders: Vec<u8>,
-        unreached_sources: usize,
-    ) -> Self {
+    pub fn new(graph: VeinGraph, radii: Vec<f64>, orders: Vec<u8>) -> Self {
         assert_eq!(radii.len(), graph.len(), "a radius for every node");
         assert_eq!(orders.len(), graph.len(), "an order for every node");
-        Self { graph, radii, orders, unreached_sources }
+        let nodes_after_step = vec![graph.len() as u32];
+        let unreached = Unreached::default();
+        Self { graph, radii, orders, nodes_after_step, sources: 0, unreached }
     }
 
     /// The nodes and edges.
@@ -135,6 +134,12 @@ impl Venation {
             2 => VeinKind::Secondary,
             _ => VeinKind::Minor,
         }
+    }
+
+    /// How many nodes there were after each step; nodes are numbered as they grew.
+    #[must_use]
+    pub fn nodes_after_step(&self) -> &[u32] {
+        &self.nodes_after_step
     }
 
     /// How many auxin sources there were in all.
@@ -214,7 +219,14 @@ pub fn grow_from(
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
     let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
     let orders = orders::by_width(&graph, &radii);
-    Ok(Venation { graph, radii, orders, sources: grown.sources, unreached: grown.unreached })
+    Ok(Venation {
+        graph,
+        radii,
+        orders,
+        nodes_after_step: grown.nodes_after_step,
+        sources: grown.sources,
+        unreached: grown.unreached,
+    })
 }
 
 /// Refuses settings under which growth would make no sense or never end.

@@ -95,7 +95,7 @@ fn venation() -> Venation {
     }
     graph.join(ends[0], ends[1]);
     assert_eq!(graph.check(), None);
-    Venation::new(graph, radii, orders, 3)
+    Venation::new(graph, radii, orders)
 }
 
 fn textures(margin: &Margin) -> TextureSet {
@@ -300,7 +300,7 @@ fn the_vein_graph_reads_back() {
 #[test]
 fn a_leaf_without_veins_has_files_too() {
     let mut leaf = SmallLeaf::new("bare");
-    leaf.venation = Venation::new(VeinGraph::new(), Vec::new(), Vec::new(), 0);
+    leaf.venation = Venation::new(VeinGraph::new(), Vec::new(), Vec::new());
     let files = leaf.encoded();
     let json: serde_json::Value = serde_json::from_str(text_of(&files, "bare_veins.json")).unwrap();
     assert_eq!(json["nodes"], serde_json::json!([]));

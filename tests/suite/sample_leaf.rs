@@ -22,7 +22,7 @@ pub(crate) fn ovate(length: f64) -> Margin {
 
 /// A blade without veins.
 pub(crate) fn bare() -> Venation {
-    Venation::new(VeinGraph::new(), Vec::new(), Vec::new(), 0)
+    Venation::new(VeinGraph::new(), Vec::new(), Vec::new())
 }
 
 /// Veins that fill `margin`, some 7000 nodes on an 80 mm blade.
@@ -101,5 +101,5 @@ fn measured(graph: VeinGraph) -> Venation {
         orders[child as usize] = (orders[parent as usize] + u8::from(branches)).min(9);
     }
     let radii = cubes.iter().map(|cube| cube.max(0.03_f64.powi(3)).cbrt()).collect();
-    Venation::new(graph, radii, orders, 0)
+    Venation::new(graph, radii, orders)
 }

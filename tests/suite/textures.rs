@@ -55,7 +55,7 @@ fn midrib(margin: &Margin) -> Venation {
         tip = graph.sprout(tip, DVec2::new(0.0, margin.length_mm() * f64::from(i) / 101.0));
     }
     let nodes = graph.len();
-    Venation::new(graph, vec![0.6; nodes], vec![1; nodes], 0)
+    Venation::new(graph, vec![0.6; nodes], vec![1; nodes])
 }
 
 #[test]

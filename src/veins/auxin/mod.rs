@@ -36,8 +36,9 @@ pub struct Grown {
     pub unreached: Unreached,
     /// Sources that ever were.
     pub sources: usize,
-    /// Steps made; fewer than the blade has when nothing could change any more.
-    pub steps: u64,
+    /// How many nodes there were after each step made; fewer steps than the blade has when nothing
+    /// could change any more.
+    pub nodes_after_step: Vec<u32>,
 }
 
 /// More nodes than this are a slip of the keyboard: a leaf with every areole of a real one has 1.5
@@ -66,6 +67,7 @@ pub fn grow(
     let steps = blade.steps().count() as u64;
     let pace = (steps / 100).max(1);
     let mut made = 0;
+    let mut nodes_after_step = Vec::new();
     for step in blade.steps() {
         let metric = blade.metric(step);
         nodes.refine(metric);
@@ -89,6 +91,7 @@ pub fn grow(
         let stands_still = dead.is_empty() && nodes.len() == before;
         supply.forget(dead);
         made += 1;
+        nodes_after_step.push(nodes.len() as u32);
         if made % pace == 0 || made == steps {
             observer.report(Progress {
                 stage: "veins",
@@ -109,5 +112,5 @@ pub fn grow(
     unreached.outside += supply.outside();
     unreached.too_young += supply.unborn();
     let sources = calls.len() + unreached.outside + supply.unborn();
-    Ok(Grown { graph: nodes.into_graph(), unreached, sources, steps: made })
+    Ok(Grown { graph: nodes.into_graph(), unreached, sources, nodes_after_step })
 }

@@ -13,7 +13,7 @@ use super::normals;
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::{Pigments, Tissue};
 use super::relief::{Ground, Relief};
-use super::tissue::{self, Net};
+use super::tissue::{self, Net, smooth};
 use super::{Paint, SideMaps};
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -32,6 +32,9 @@ const BAND: usize = 32;
 
 /// A slit is open this wide (mm): the edges of torn tissue shrink back a little.
 const SLIT_MM: f64 = 0.15;
+
+/// The petiole is at least this share of its own width where it meets the blade.
+const NECK: f64 = 0.62;
 
 /// Fibres are longer than wide by the inverse of this.
 const FIBRE_STRETCH: f32 = 0.08;
@@ -68,9 +71,10 @@ impl Scene {
             .filter(|&node| graph.parent(node).is_none())
             .map(|node| venation.radii()[node as usize])
             .fold(0.0, f64::max);
-        // A leaf without veins still hangs on something.
-        let root = if root > 0.0 { root } else { 0.3 * paint.petiole.width_mm };
-        let stalk = Stalk::new(paint.petiole, root);
+        // A thin midrib widens towards the petiole, and a leaf without veins still hangs on one.
+        let stalked = paint.petiole.length_mm > 0.0;
+        let neck = if stalked { root.max(NECK * 0.5 * paint.petiole.width_mm) } else { root };
+        let stalk = Stalk::new(paint.petiole, neck);
         let (blade, below) = (margin.bounds(), stalk.bounds());
         let frame = TextureFrame::around(
             blade.min.min(below.min),
@@ -91,18 +95,18 @@ impl Scene {
             let [a, b] = [pixel(&w[0]).as_vec2(), pixel(&w[1]).as_vec2()];
             Capsule { a, b, radius_a: radius, radius_b: radius }
         });
-        let shown = tissue::shown(tissue::AREOLE_MM[0], per_mm as f32);
+        let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], per_mm as f32);
         Self {
             size,
             frame,
             per_mm: per_mm as f32,
             outline: margin.outline().iter().map(pixel).collect(),
             slits: slits.collect(),
-            strokes: Strokes::new(venation, &frame, size),
+            strokes: Strokes::new(venation, neck, &frame, size),
             guide: Guide::new(margin, venation, &frame, size, &reach, tissue),
             stalk_length: paint.petiole.length_mm as f32,
-            pigments: Pigments::of_sides(paint.colour, &paint.petiole.colour, 6.0 * root as f32),
-            relief: Relief::new(paint.relief, widest, root, stalk.widest(), shown),
+            pigments: Pigments::of_sides(paint.colour, &paint.petiole.colour, 6.0 * neck as f32),
+            relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             stalk,
             seed: tissue,
         }
@@ -287,9 +291,9 @@ fn bands(side: &mut SideMaps, size: usize) -> impl IndexedParallelIterator<Item 
 /// Goes along the rows of a band, with the nets' neighbourhoods at hand.
 struct Walker<'a> {
     scene: &'a Scene,
-    nets: [Net; 2],
-    shown: [f32; 2],
-    lines: [f32; 2],
+    nets: [Net; 3],
+    shown: [f32; 3],
+    lines: [f32; 3],
     grain: f32,
     mm: f32,
     min: [f32; 2],
@@ -297,10 +301,10 @@ struct Walker<'a> {
 
 impl<'a> Walker<'a> {
     fn new(scene: &'a Scene) -> Self {
-        let sizes = tissue::AREOLE_MM;
+        let sizes = tissue::MESH_MM;
         Self {
             scene,
-            nets: [0, 1].map(|k| Net::new(sizes[k], scene.seed ^ (0x51 + k as u32))),
+            nets: [0, 1, 2].map(|k| Net::new(sizes[k], scene.seed ^ (0x51 + k as u32))),
             shown: sizes.map(|size| tissue::shown(size, scene.per_mm)),
             lines: tissue::LINE_MM.map(|half| half * scene.per_mm),
             grain: tissue::grain_size(scene.per_mm),
@@ -325,16 +329,18 @@ impl<'a> Walker<'a> {
         // The net is drawn out and bent by the tissue's own unevenness.
         let [_, middle, fine] = place.noise;
         let (bent_x, bent_y) = (x + 0.5 * middle + 0.25 * fine, y + 0.45 * fine - 0.4 * middle);
-        let (mut lines, mut tones, mut border) = ([0.0; 2], [0.0; 2], 0.0);
-        for k in 0..2 {
-            if self.shown[k] == 0.0 {
+        let (mut lines, mut tones, mut border) = ([0.0; 3], [0.0; 3], 0.0);
+        for (k, net) in self.nets.iter_mut().enumerate() {
+            let [none, full] = tissue::AWAY_MM[k];
+            let shown = self.shown[k] * smooth(none, full, place.vein);
+            if self.shown[k] == 0.0 || (shown == 0.0 && k != tissue::AREOLE) {
                 continue;
             }
-            let mesh = self.nets[k].at(bent_x, bent_y);
-            let half = (0.7 * self.lines[k]).max(0.5);
-            lines[k] = self.shown[k] * stroke_share(mesh.border / self.mm, self.lines[k], half);
-            tones[k] = self.shown[k] * (2.0 * mesh.tone - 1.0);
-            if k == 0 {
+            let mesh = net.at(bent_x, bent_y);
+            let half = (0.7 * self.lines[k]).max(0.7);
+            lines[k] = shown * stroke_share(mesh.border / self.mm, self.lines[k], half);
+            tones[k] = shown * (2.0 * mesh.tone - 1.0);
+            if k == tissue::AREOLE {
                 border = mesh.border;
             }
         }
@@ -379,7 +385,10 @@ impl Texel<'_> {
         if stalk == 0.0 || seen <= 0.0 {
             return [0.0; 2];
         }
-        [stalk * (1.0 - blade) / seen, stalk / seen]
+        let (under, over) = (stalk * (1.0 - blade) / seen, stalk / seen);
+        // Its rounded upper end dips into the midrib.
+        let emerged = smooth(0.0, 1.5 * self.stalk.radius, self.stalk.along);
+        [under, under + (over - under) * emerged]
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! The fine structure between the grown veins: a net of the finest veins around areoles, and grain.
 //!
-//! The net is the border of a jittered Voronoi diagram in two sizes (S. Worley, "A cellular texture
+//! The net is the border of a jittered Voronoi diagram in three sizes (S. Worley, "A cellular texture
 //! basis function", SIGGRAPH 1996). Departs from it: the distance to the border is that to the
 //! bisector of the two nearest points, not F₂ − F₁, so that lines keep their width.
 //!
@@ -9,11 +9,18 @@
 
 use crate::geometry::noise;
 
-/// Sizes of areoles (mm): meshes of the fourth, and of the fifth order of veins.
-pub(super) const AREOLE_MM: [f32; 2] = [0.85, 0.27];
+/// Sizes of the meshes (mm): of third-order veins where none have grown, of the fourth order, and
+/// of the fifth.
+pub(super) const MESH_MM: [f32; 3] = [2.1, 0.85, 0.27];
 
-/// Half the width of the lines of either net (mm).
-pub(super) const LINE_MM: [f32; 2] = [0.035, 0.014];
+/// Which mesh is the areole: the one that bulges.
+pub(super) const AREOLE: usize = 1;
+
+/// Half the width of the lines of each net (mm).
+pub(super) const LINE_MM: [f32; 3] = [0.042, 0.032, 0.014];
+
+/// The nets begin within these distances (mm) of a grown vein: nearer, it takes their place.
+pub(super) const AWAY_MM: [[f32; 2]; 3] = [[0.5, 1.3], [0.05, 0.35], [0.0, 0.1]];
 
 /// Size of the grain (mm): a few cells of the epidermis.
 const GRAIN_MM: f32 = 0.11;

@@ -115,10 +115,10 @@ mod tests {
 
     #[test]
     fn the_common_part_of_a_fork_and_a_bar_is_the_part_at_the_base() {
-        let fork =
-            [(0., 0.), (3., -1.), (3., 9.), (1., 9.), (1., 2.), (-1., 2.), (-1., 9.), (-3., 9.)]
-                .map(DVec2::from);
-        let bar = [(0., 0.), (5., -0.5), (5., 4.), (-5., 4.), (-5., 3.9)].map(DVec2::from);
+        let right = [(0., 0.), (3., -1.), (3., 9.), (1., 9.), (1., 5.), (2., 2.)];
+        let left = [(-1., 2.), (-1., 9.), (-3., 9.), (-3., -1.)];
+        let fork: Vec<DVec2> = right.into_iter().chain(left).map(DVec2::from).collect();
+        let bar = [(0., 0.), (5., -0.5), (5., 4.), (-5., 4.), (-5., -0.5)].map(DVec2::from);
         let part = common_part(&bar, &fork);
         let brute = (0..400 * 400)
             .map(|i| DVec2::new(f64::from(i % 400) - 199.5, f64::from(i / 400) - 99.5) * 0.025)

@@ -12,7 +12,7 @@ use venation::veins::VeinSpec;
 
 /// In which frame distances are measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Frame {
+pub(crate) enum Frame {
     /// The mature leaf; the lengths of the model shrink.
     Mature,
     /// The leaf as it is: everything is carried along in every step.
@@ -20,10 +20,10 @@ pub enum Frame {
 }
 
 /// Nodes, each with its parent, and how many sources are left alive.
-pub struct Reference {
-    pub positions: Vec<DVec2>,
-    pub parents: Vec<Option<usize>>,
-    pub alive: usize,
+pub(crate) struct Reference {
+    pub(crate) positions: Vec<DVec2>,
+    pub(crate) parents: Vec<Option<usize>>,
+    pub(crate) alive: usize,
 }
 
 struct World<'a> {
@@ -142,7 +142,7 @@ impl World<'_> {
 }
 
 /// Grows open venation from `root` over at most `most_steps` steps.
-pub fn grow(
+pub(crate) fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
     root: DVec2,

@@ -231,13 +231,14 @@ pub struct FosterRow {
     pub table: &'static str,
     /// The value in this row.
     pub value: &'static str,
-    /// Seconds printed in the report.
+    /// Seconds printed in the report; [`FOSTER_GAVE_UP`] where it gives only that limit.
     pub printed_seconds: f64,
-    /// Whether the report gives only a lower limit (it gave up).
-    pub given_up: bool,
     growth: GrowthSpec,
     veins: VeinSpec,
 }
+
+/// Runs longer than this (s) were not waited for in the report.
+pub const FOSTER_GAVE_UP: f64 = 6000.0;
 
 /// Length from the root to the farthest point of the outline in the suite (px; one px is one mm).
 pub const FOSTER_REACH: f64 = 300.0;
@@ -267,7 +268,6 @@ pub fn foster_suite() -> Vec<FosterRow> {
             table,
             value,
             printed_seconds,
-            given_up: printed_seconds >= 6000.0,
             growth: growth.clone(),
             veins: veins.clone(),
         };
@@ -306,9 +306,12 @@ pub fn foster_suite() -> Vec<FosterRow> {
             growth.horizontal_steps = 450;
         }));
     }
-    for (value, steps, seconds) in
-        [("600", 600, 25.0), ("1000", 1000, 370.0), ("3000", 3000, 6000.0), ("5000", 5000, 6000.0)]
-    {
+    for (value, steps, seconds) in [
+        ("600", 600, 25.0),
+        ("1000", 1000, 370.0),
+        ("3000", 3000, FOSTER_GAVE_UP),
+        ("5000", 5000, FOSTER_GAVE_UP),
+    ] {
         rows.push(row("total steps", value, seconds, &|growth, _| growth.total_steps = steps));
     }
     rows

@@ -64,7 +64,8 @@ fn case(
     };
     let margin = if concave { lobed() } else { ellipse() };
     let mut spec = VeinSpec {
-        spawn_rate: rng.between(0.5, 8.0),
+        // Now and then more than fit into the lists that are searched one by one.
+        spawn_rate: if rng.unit() < 0.2 { 60.0 } else { rng.between(0.5, 8.0) },
         source_spawn_distance_mm: rng.between(0.0, 8.0),
         vein_spawn_distance_mm: rng.between(0.0, 8.0),
         node_step_mm: rng.between(1.0, 4.0),

@@ -40,6 +40,9 @@ const MOST_WIDTH: f64 = 0.1;
 const LEAST_SLENDERNESS: f64 = 0.7;
 /// Shorter than this, as a share of the root of the leaf's area, is a flaw of the outline.
 const LEAST_LENGTH: f64 = 0.012;
+/// The least width at a third of the length, over the typical width: a tip that grows evenly from
+/// nothing has 0.56 there.
+const LEAST_AT_THIRD: f64 = 0.7;
 /// The width at which the stalk ends, over its own width.
 const FLARED: f64 = 1.5;
 /// The cut is made where the stalk is still this wide, over its own width.
@@ -77,7 +80,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let step = ring[0].distance(ring[1]);
     let (mut from, mut to) = (end, end);
     let mut chords: Vec<Chord> = vec![Chord { from, to, width: 0.0, depth: 0.0 }];
-    let mut middle = ring[end];
+    let (mut middle, mut evened) = (ring[end], ring[end]);
     let most = 2.5 * MOST_WIDTH * size;
     while chords.len() < n / 2 {
         let (back, forth) = ((from + n - 1) % n, (to + 1) % n);
@@ -90,8 +93,10 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
             b
         };
         let next = (ring[from] + ring[to]) * 0.5;
-        let depth = chords[chords.len() - 1].depth + next.distance(middle);
-        middle = next;
+        // The banks advance in turns: over two steps the middle does not sway.
+        let even = (middle + next) * 0.5;
+        let depth = chords[chords.len() - 1].depth + even.distance(evened);
+        (middle, evened) = (next, even);
         chords.push(Chord { from, to, width, depth });
         if width > most {
             break;
@@ -126,6 +131,10 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let attached = &chords[cut];
     let length = attached.depth;
     if length < LEAST_SLENDERNESS * typical || length < LEAST_LENGTH * size {
+        return None;
+    }
+    let third = chords.iter().find(|c| c.depth >= 0.35 * length)?;
+    if third.width < LEAST_AT_THIRD * typical {
         return None;
     }
     // The two banks must enclose blade, not the gap between two lobes.

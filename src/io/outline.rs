@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use crate::geometry::polygon;
+use crate::geometry::{Rect, polygon};
 use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
 use crate::margin::{Margin, MarginError, sketch};
@@ -219,20 +219,26 @@ fn from_text(
 fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
     let outline = &mut found.traced.outline;
     let Some(at) = polygon::self_crossing(outline) else { return Ok(()) };
+    // A line crosses itself everywhere; what it lacks is area.
+    let size = Rect::around(outline.iter().copied()).size();
+    let area = polygon::signed_area(outline);
+    if area.abs() < 1e-5 * size.max_element().powi(2) {
+        return Err(OutlineProblem::content("the points lie on a line and enclose no area"));
+    }
     let mended = without_loops(outline);
     match mended {
         Some(mended) => {
             *outline = mended;
             let at = at * found.unit;
             found.traced.notes.push(format!(
-                "the outline crossed itself near ({:.6}, {:.6}): loops cut off",
-                at.x, at.y
+                "the outline crossed itself near {}: loops cut off",
+                place_name(at)
             ));
             Ok(())
         }
         None => Err(OutlineProblem::Content(format!(
-            "the outline crosses itself near ({:.6}, {:.6}); mend it there",
-            at.x, at.y
+            "the outline crosses itself near {}; mend it there",
+            place_name(at * found.unit)
         ))),
     }
 }
@@ -320,9 +326,19 @@ fn attachment_note(placed: &Placed, base: DVec2, kind: OutlineKind) -> String {
         Found::End => "no petiole: attachment assumed",
     };
     match kind {
-        OutlineKind::Polygon => format!("{how} at ({:.6}, {:.6})", base.x, base.y),
+        OutlineKind::Polygon => format!("{how} at {}", place_name(base)),
         _ => format!("{how} at pixel ({:.0}, {:.0})", base.x, base.y),
     }
+}
+
+/// A place in the coordinates of a file, to about five digits.
+fn place_name(p: DVec2) -> String {
+    let number = |v: f64| match v.abs() {
+        size if size >= 1e7 || (size < 1e-2 && size > 0.0) => format!("{v:.4e}"),
+        size if size >= 100.0 => format!("{v:.1}"),
+        _ => format!("{v:.3}"),
+    };
+    format!("({}, {})", number(p.x), number(p.y))
 }
 
 #[cfg(test)]

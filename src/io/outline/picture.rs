@@ -91,7 +91,9 @@ fn read_png(
     reader: impl BufRead + Seek,
 ) -> Result<(Picture, Vec<String>), OutlineProblem> {
     let broken = |error: png::DecodingError| {
-        OutlineProblem::Content(format!("is not a sound PNG picture: {error}"))
+        let what = error.to_string();
+        let what = if what.starts_with("CRC error") { "a checksum does not match" } else { &what };
+        OutlineProblem::Content(format!("is not a sound PNG picture: {what}"))
     };
     let mut decoder = png::Decoder::new_with_limits(reader, png::Limits { bytes: 256 << 20 });
     decoder.set_ignore_text_chunk(true);

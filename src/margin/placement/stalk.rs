@@ -21,6 +21,8 @@ pub(super) struct Stalk {
     pub(super) slenderness: f64,
     /// How much wider the zip is one and a half widths beyond the attachment, in widths.
     pub(super) flare: f64,
+    /// Its width near the blade over its width near the end.
+    pub(super) widening: f64,
 }
 
 impl Stalk {
@@ -35,7 +37,7 @@ impl Stalk {
 }
 
 /// Wider than this, as a share of the root of the leaf's area, is a lobe.
-const MOST_WIDTH: f64 = 0.1;
+const MOST_WIDTH: f64 = 0.13;
 /// Shorter than this, in widths, is a tooth.
 const LEAST_SLENDERNESS: f64 = 0.7;
 /// Shorter than this, as a share of the root of the leaf's area, is a flaw of the outline.
@@ -144,7 +146,9 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
         return None;
     }
     let beyond = chords.iter().take_while(|c| c.depth <= length + 1.5 * typical).last()?;
+    let near_blade = chords.iter().find(|c| c.depth >= 0.85 * length)?;
     Some(Stalk {
+        widening: near_blade.width / third.width,
         from: attached.from,
         to: attached.to,
         attachment: (ring[attached.from] + ring[attached.to]) * 0.5,
@@ -182,7 +186,9 @@ mod tests {
             let found = stalks(&lens(Some((length, 0.05))), 1.1);
             assert_eq!(found.len(), 1, "{found:?}");
             assert!(found[0].attachment.length() < 0.05, "{found:?}");
-            assert!((found[0].slenderness * 0.05 / length - 1.0).abs() < 0.4, "{found:?}");
+            // The lens itself is no wider than the stalk up to y = 0.03.
+            let expected = (length + 0.03) / 0.05;
+            assert!((found[0].slenderness / expected - 1.0).abs() < 0.4, "{found:?}");
         }
     }
 

@@ -202,7 +202,7 @@ fn measure(
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),
-        steps: grown.steps,
+        steps: grown.nodes_after_step.len() as u64,
         seconds,
         unreached: grown.unreached,
     })

@@ -167,11 +167,7 @@ fn from_picture(
     Ok(Found2d { traced, kind, unit: picture.file_pixels, y_down: true })
 }
 
-fn trace(
-    kind: OutlineKind,
-    picture: &Picture,
-    root: Option<DVec2>,
-) -> Result<Traced, MarginError> {
+fn trace(kind: OutlineKind, picture: &Picture, root: Option<DVec2>) -> Result<Traced, MarginError> {
     match kind {
         OutlineKind::Sketch => sketch::trace(picture, root),
         _ => silhouette::trace(picture, root),
@@ -230,10 +226,10 @@ fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
         Some(mended) => {
             *outline = mended;
             let at = at * found.unit;
-            found.traced.notes.push(format!(
-                "the outline crossed itself near {}: loops cut off",
-                place_name(at)
-            ));
+            found
+                .traced
+                .notes
+                .push(format!("the outline crossed itself near {}: loops cut off", place_name(at)));
             Ok(())
         }
         None => Err(OutlineProblem::Content(format!(
@@ -292,12 +288,15 @@ fn place(found: Found2d, options: &OutlineOptions) -> Result<ImportedOutline, Ou
         traced.cuts.iter().map(|line| line.iter().map(|&p| p * up).collect()).collect();
     let root = options.root.map(|root| DVec2::from(root) * up / unit);
     // A root in a sketch marks the blade by lying in it: only its nearest margin is the base.
-    let placed = placement::place(&outline, &cuts, root, options.length_mm).map_err(|error| {
-        match (error, options.root) {
-            (MarginError::Root { problem, .. }, Some([x, y])) => MarginError::Root { x, y, problem },
-            (error, _) => error,
-        }
-    })?;
+    let placed =
+        placement::place(&outline, &cuts, root, options.length_mm).map_err(|error| {
+            match (error, options.root) {
+                (MarginError::Root { problem, .. }, Some([x, y])) => {
+                    MarginError::Root { x, y, problem }
+                }
+                (error, _) => error,
+            }
+        })?;
     // Guarantees are the margin's to give.
     let hint = "mend the outline there";
     let points = placed.outline.clone();
@@ -347,9 +346,10 @@ mod tests {
 
     #[test]
     fn a_small_loop_is_cut_off_and_a_large_one_is_not() {
-        let circle = |n: usize| (0..n).map(move |i| {
-            DVec2::from_angle(std::f64::consts::TAU * i as f64 / n as f64) * 10.0
-        });
+        let circle = |n: usize| {
+            (0..n)
+                .map(move |i| DVec2::from_angle(std::f64::consts::TAU * i as f64 / n as f64) * 10.0)
+        };
         let mut points: Vec<DVec2> = circle(60).collect();
         points.swap(10, 11);
         assert!(polygon::self_crossing(&points).is_some());

@@ -38,7 +38,6 @@ pub(super) struct Stalk {
     radii: Vec<f64>,
     /// Distance of each point from the blade along the stalk (mm), negative above the base.
     along: Vec<f64>,
-    length: f64,
 }
 
 /// The stalk runs on along the midrib over so many of its radii, thinning: a blade that narrows to
@@ -64,7 +63,7 @@ impl Stalk {
     pub(super) fn new(spec: &PetioleSpec, neck: f64, midrib: &[DVec2]) -> Self {
         let length = spec.length_mm;
         if length <= 0.0 {
-            return Self { points: vec![DVec2::ZERO], radii: vec![0.0], along: vec![0.0], length };
+            return Self { points: vec![DVec2::ZERO], radii: vec![0.0], along: vec![0.0] };
         }
         let (mut points, mut radii, mut along) = Self::root(neck, midrib);
         let stem_radius = 0.5 * spec.width_mm;
@@ -85,7 +84,7 @@ impl Stalk {
             direction = DVec2::new(turn.cos(), turn.sin()).rotate(direction);
             point += direction * step;
         }
-        Self { points, radii, along, length }
+        Self { points, radii, along }
     }
 
     /// The part along the midrib, from its thin end down to the base, which is not in it.

@@ -139,9 +139,7 @@ pub(crate) fn run() -> Result<(), Failure> {
                 write!(std::io::stdout(), "{error}")?;
                 return Ok(());
             }
-            let text = error.to_string();
-            let text = text.trim_start_matches("error: ").trim_end();
-            return Err(Failure::Input(text.to_owned()));
+            return Err(Failure::Input(one_line(&error.to_string())));
         }
     };
     let mut stdout = std::io::stdout().lock();
@@ -152,4 +150,12 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Bench(args) => bench::run(args, &mut context),
         Command::Presets(args) => presets::run(args, &mut context),
     }
+}
+
+/// clap's message in one line: what is wrong and its tip, without usage.
+fn one_line(message: &str) -> String {
+    let said = message.split("\nUsage:").next().unwrap_or(message);
+    let said = said.split("\nFor more information").next().unwrap_or(said);
+    let lines: Vec<&str> = said.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    lines.join("; ").trim_start_matches("error: ").replace(":; ", ": ")
 }

@@ -11,6 +11,7 @@
 //! tissue never disappears again ([`marginal`]).
 
 mod marginal;
+mod overlap;
 mod scales;
 
 use glam::DVec2;

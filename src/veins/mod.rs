@@ -53,6 +53,26 @@ parameters! {
     }
 }
 
+impl std::fmt::Display for Unreached {
+    /// The count, and the reasons in words.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.total())?;
+        let reasons = [
+            (self.outside, "outside the blade"),
+            (self.too_young, "where the margin has not come yet"),
+            (self.out_of_reach, "beyond the attraction distance of every vein"),
+            (self.hidden, "hidden behind the margin or a cut"),
+            (self.unfinished, "not reached when growth ended"),
+        ];
+        let mut separator = ": ";
+        for (count, reason) in reasons.into_iter().filter(|&(count, _)| count > 0) {
+            write!(f, "{separator}{count} {reason}")?;
+            separator = ", ";
+        }
+        Ok(())
+    }
+}
+
 /// A vein pattern with widths and orders.
 ///
 /// # Guarantees

@@ -7,3 +7,4 @@ mod presets; // every leaf that comes with venation
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
 mod support;
 mod textures; // what painting promises
+mod veins; // growth against an obvious reference, node by node

@@ -25,6 +25,12 @@ pub(super) struct Base {
     pub(super) stalk: Option<Stalk>,
 }
 
+impl Base {
+    fn on(stalk: Stalk) -> Self {
+        Self { at: stalk.attachment, found: Found::Stalk, stalk: Some(stalk) }
+    }
+}
+
 /// What can be told of a leaf without knowing its base.
 #[derive(Debug)]
 pub(super) struct Shape<'a> {
@@ -39,20 +45,36 @@ pub(super) struct Shape<'a> {
 /// Weights of what speaks for a base. Set by hand on sixty leaves of twenty species; a wrong base
 /// costs a whole side, so only their order matters.
 mod weight {
-    /// A long petiole outweighs everything.
+    /// A long petiole outweighs everything, most of all when it is so long that it spoils symmetry.
+    pub(super) const PETIOLE: f64 = 2.5;
     pub(super) const STALK: f64 = 2.0;
     /// A petiole cut off at its own width still says more than the rest.
     pub(super) const STUB: f64 = 0.5;
     pub(super) const NOTCH: f64 = 0.5;
-    pub(super) const SYMMETRY: f64 = 4.0;
-    pub(super) const SHARP_TIP: f64 = 0.8;
+    pub(super) const SYMMETRY: f64 = 7.0;
+    pub(super) const SHARP_TIP: f64 = 0.6;
     pub(super) const LOW: f64 = 0.5;
     pub(super) const BLUNT: f64 = 0.6;
     pub(super) const LONG: f64 = 0.2;
 }
 
-/// The tip is looked for this far to both sides of the line from the base through the centre (deg).
-const TIP_WITHIN_DEG: f64 = 25.0;
+/// The tip is looked for this far to both sides of the line from the base through the centre (deg);
+/// beyond the second angle it may be one of two lobes.
+const TIP_WITHIN_DEG: (f64, f64) = (25.0, 10.0);
+
+/// A base this near to a stalk, as a share of the root of the area, is at the stalk.
+const BESIDE: f64 = 0.08;
+
+/// What a stalk adds to the sum for its attachment.
+fn worth(stalk: &Stalk) -> f64 {
+    let long = ((stalk.slenderness - 1.0) / 2.0).clamp(0.0, 1.0);
+    let very_long = ((stalk.slenderness - 4.0) / 4.0).clamp(0.0, 1.0);
+    // A drip tip may pass for a stalk, but it widens towards the blade and flares little.
+    let flare = ((stalk.flare - 1.2) / 1.2).clamp(0.3, 1.0);
+    let steady = ((1.9 - stalk.widening) / 0.6).clamp(0.1, 1.0);
+    let stub = weight::STUB + (weight::STALK - weight::STUB) * long;
+    (stub * flare + weight::PETIOLE * very_long) * steady
+}
 
 impl<'a> Shape<'a> {
     pub(super) fn of(ring: &'a [DVec2]) -> Self {
@@ -71,12 +93,7 @@ impl<'a> Shape<'a> {
             }
         };
         for &stalk in &self.stalks {
-            let long = ((stalk.slenderness - 1.0) / 2.0).clamp(0.0, 1.0);
-            let flare = ((stalk.flare - 1.5) / 1.0).clamp(0.2, 1.0);
-            let worth = (weight::STUB + (weight::STALK - weight::STUB) * long) * flare;
-            let at = stalk.attachment;
-            let base = Base { at, found: Found::Stalk, stalk: Some(stalk) };
-            offer(self.score(at) + worth, base);
+            offer(self.score(stalk.attachment) + worth(&stalk), Base::on(stalk));
         }
         for (at, depth) in self.notches() {
             let worth = weight::NOTCH * (depth / (0.08 * self.size)).min(1.0);
@@ -87,6 +104,13 @@ impl<'a> Shape<'a> {
             offer(self.score(at), Base { at, found: Found::End, stalk: None });
         }
         let (_, mut base) = best.expect("every direction leaves the leaf somewhere");
+        // Whatever was found beside a stalk means the stalk.
+        let near = |stalk: &&Stalk| stalk.attachment.distance(base.at) < BESIDE * self.size;
+        if base.stalk.is_none()
+            && let Some(&stalk) = self.stalks.iter().find(near)
+        {
+            base = Base::on(stalk);
+        }
         if base.found == Found::End {
             // Directions are coarse: opposite the tip is finer.
             let tip = self.tip(base.at);
@@ -110,26 +134,34 @@ impl<'a> Shape<'a> {
     }
 
     /// The tip of a leaf with its base at `base`: the farthest point that stands out within
-    /// [`TIP_WITHIN_DEG`] of the line from the base through the centre; without one, as between two
-    /// lobes, the place where that line leaves the leaf.
+    /// [`TIP_WITHIN_DEG`] of the line from the base through the centre; without one, or between two
+    /// lobes that stand out alike on both sides, the place where that line leaves the leaf.
     pub(super) fn tip(&self, base: DVec2) -> DVec2 {
         let n = self.ring.len();
         let along = (self.centre - base).normalize_or(DVec2::Y);
         let far = |i: usize| self.ring[i % n].distance(base);
-        let least_cos = libm::cos(TIP_WITHIN_DEG.to_radians());
+        let off = |i: usize| self.ring[i] - base;
+        let within = |i: usize, cos: f64| off(i).dot(along) >= cos * off(i).length();
+        let (wide, narrow) = TIP_WITHIN_DEG;
+        let (wide, narrow) = (libm::cos(wide.to_radians()), libm::cos(narrow.to_radians()));
         let window = n / 40 + 1;
-        let tip = (0..n)
+        let tips: Vec<usize> = (0..n)
             .filter(|&i| {
-                let off = self.ring[i] - base;
-                off.dot(along) >= least_cos * off.length()
-                    && off.length() > 0.3 * self.size
+                within(i, wide)
+                    && off(i).length() > 0.3 * self.size
                     && (1..=window).all(|k| far(i) >= far(i + k) && far(i) >= far(i + n - k))
             })
-            .max_by(|&i, &j| {
-                let reach = |i: usize| (self.ring[i] - base).dot(along);
-                reach(i).total_cmp(&reach(j))
-            });
-        tip.map_or_else(|| self.exit(self.centre, along), |i| self.ring[i])
+            .collect();
+        let reach = |i: usize| off(i).dot(along);
+        let tip = tips.iter().copied().max_by(|&i, &j| reach(i).total_cmp(&reach(j)));
+        let twin = |i: usize, j: usize| {
+            along.perp_dot(off(i)) * along.perp_dot(off(j)) < 0.0 && reach(j) > 0.7 * reach(i)
+        };
+        let lobe = |i: usize| !within(i, narrow) && tips.iter().any(|&j| twin(i, j));
+        match tip {
+            Some(i) if !lobe(i) => self.ring[i],
+            _ => self.exit(self.centre, along),
+        }
     }
 
     /// The angle of the outline at the point of the ring nearest to `at` (deg).

@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::fields::{Guide, Strokes, VeinAt};
+use super::fields::{Guide, Strokes, VeinAt, midrib};
 use super::normals;
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::{Pigments, Tissue};
@@ -74,7 +74,9 @@ impl Scene {
         // A thin midrib widens towards the petiole, and a leaf without veins still hangs on one.
         let stalked = paint.petiole.length_mm > 0.0;
         let neck = if stalked { root.max(NECK * 0.5 * paint.petiole.width_mm) } else { root };
-        let stalk = Stalk::new(paint.petiole, neck);
+        let midrib: Vec<DVec2> =
+            midrib(venation).into_iter().map(|node| graph.positions()[node as usize]).collect();
+        let stalk = Stalk::new(paint.petiole, neck, &midrib);
         let (blade, below) = (margin.bounds(), stalk.bounds());
         let frame = TextureFrame::around(
             blade.min.min(below.min),
@@ -386,8 +388,8 @@ impl Texel<'_> {
             return [0.0; 2];
         }
         let (under, over) = (stalk * (1.0 - blade) / seen, stalk / seen);
-        // Its rounded upper end dips into the midrib.
-        let emerged = smooth(0.0, 1.5 * self.stalk.radius, self.stalk.along);
+        // Its upper end dips into the midrib.
+        let emerged = smooth(-4.0, 1.0, self.stalk.along / self.stalk.radius.max(1e-6));
         [under, under + (over - under) * emerged]
     }
 

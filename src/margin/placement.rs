@@ -86,9 +86,8 @@ pub fn place(
     let ring = polygon::resampled(&unit, 1.0 / STEPS);
     let shape = Shape::of(&ring);
     let base = match root {
-        Some(root) => at_root(&shape, &unit, near_one(&root)).map_err(|problem| {
-            MarginError::Root { x: root.x, y: root.y, problem }
-        })?,
+        Some(root) => at_root(&shape, &unit, near_one(&root))
+            .map_err(|problem| MarginError::Root { x: root.x, y: root.y, problem })?,
         None => shape.base(),
     };
     let tip = shape.tip(base.at);
@@ -153,9 +152,10 @@ fn at_root(shape: &Shape<'_>, outline: &[DVec2], root: DVec2) -> Result<Base, St
         let off = |i: usize| shape.ring[i].distance_squared(nearest);
         off(i).total_cmp(&off(j))
     });
-    let stalk = shape.stalks.iter().find(|stalk| {
-        on.is_some_and(|i| stalk.holds(i)) || stalk.attachment.distance(root) < 0.03
-    });
+    let stalk = shape
+        .stalks
+        .iter()
+        .find(|stalk| on.is_some_and(|i| stalk.holds(i)) || stalk.attachment.distance(root) < 0.03);
     Ok(Base {
         at: stalk.map_or(nearest, |stalk| stalk.attachment),
         found: Found::Given,
@@ -282,7 +282,9 @@ mod tests {
         outline.push(DVec2::new(0.0, 100.0));
         outline.extend(left);
         if petiole > 0.0 {
-            outline.extend([(-1.5, 0.0), (-1.5, -petiole), (1.5, -petiole), (1.5, 0.0)].map(DVec2::from));
+            outline.extend(
+                [(-1.5, 0.0), (-1.5, -petiole), (1.5, -petiole), (1.5, 0.0)].map(DVec2::from),
+            );
         } else {
             outline.push(DVec2::ZERO);
         }
@@ -334,7 +336,10 @@ mod tests {
         let top = place(&outline, &[], Some(DVec2::new(0.0, 101.0)), 80.0).expect("a leaf");
         assert!(top.base_was.distance(DVec2::new(0.0, 100.0)) < 1.5, "{top:?}");
         let error = place(&outline, &[], Some(DVec2::new(60.0, 50.0)), 80.0).expect_err("far off");
-        assert!(error.to_string().starts_with("the root (60, 50) lies outside the leaf"), "{error}");
+        assert!(
+            error.to_string().starts_with("the root (60, 50) lies outside the leaf"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -352,7 +357,10 @@ mod tests {
     fn lines_and_points_are_refused() {
         let line: Vec<DVec2> = (0..9).map(|i| DVec2::new(f64::from(i), 2.0)).collect();
         assert!(matches!(place(&line, &[], None, 80.0), Err(MarginError::NoArea { .. })));
-        assert!(matches!(place(&[DVec2::ONE; 4], &[], None, 80.0), Err(MarginError::NoArea { .. })));
+        assert!(matches!(
+            place(&[DVec2::ONE; 4], &[], None, 80.0),
+            Err(MarginError::NoArea { .. })
+        ));
         assert!(place(&[], &[], None, 80.0).is_err());
     }
 }

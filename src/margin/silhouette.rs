@@ -159,12 +159,7 @@ fn region_at(regions: &Components, p: DVec2, least: usize) -> Option<u32> {
 /// Colour premultiplied by alpha, and alpha: what is transparent has no colour.
 fn premultiplied(&[r, g, b, a]: &[u8; 4]) -> Vec4 {
     let alpha = f32::from(a) / 255.0;
-    Vec4::new(
-        f32::from(r) * alpha,
-        f32::from(g) * alpha,
-        f32::from(b) * alpha,
-        f32::from(a),
-    )
+    Vec4::new(f32::from(r) * alpha, f32::from(g) * alpha, f32::from(b) * alpha, f32::from(a))
 }
 
 /// How far each pixel is from the background, 0 to about 255.
@@ -218,9 +213,7 @@ fn background(pixels: &Grid<[u8; 4]>) -> Plane {
     for _ in 0..6 {
         let near: Vec<(f32, f32, Vec4)> = samples
             .iter()
-            .filter(|&&(x, y, c)| {
-                (c - plane.at(x, y, width, height)).abs().max_element() < NEAR
-            })
+            .filter(|&&(x, y, c)| (c - plane.at(x, y, width, height)).abs().max_element() < NEAR)
             .map(|&(x, y, c)| {
                 let u = (x as f32 + 0.5) / width as f32 - 0.5;
                 (u, (y as f32 + 0.5) / height as f32 - 0.5, c)

@@ -84,11 +84,7 @@ fn background(pixels: &Grid<[u8; 4]>) -> Grid<bool> {
 }
 
 /// The paper that a flood fill from the root covers.
-fn fill_from(
-    root: DVec2,
-    open: &Grid<bool>,
-    picture: &Picture,
-) -> Result<Grid<bool>, MarginError> {
+fn fill_from(root: DVec2, open: &Grid<bool>, picture: &Picture) -> Result<Grid<bool>, MarginError> {
     let (width, height) = (open.width(), open.height());
     let error = |problem: String| {
         let at = picture.in_file(root);
@@ -116,7 +112,9 @@ fn fill_from(
             })
             .min_by_key(|&(dx, dy)| (dx * dx + dy * dy, dy, dx))
             .map(|(dx, dy)| ((x + dx) as usize, (y + dy) as usize))
-            .ok_or_else(|| error("lies on ink; move it onto the paper inside the outline".into()))?;
+            .ok_or_else(|| {
+                error("lies on ink; move it onto the paper inside the outline".into())
+            })?;
     }
     if outside[start] {
         let gap = flood_fill::leak(open, start);
@@ -138,21 +136,19 @@ fn fill_from(
 }
 
 /// The largest region of paper that the border does not reach.
-fn largest_enclosed(
-    open: &Grid<bool>,
-    notes: &mut Vec<String>,
-) -> Result<Grid<bool>, MarginError> {
+fn largest_enclosed(open: &Grid<bool>, notes: &mut Vec<String>) -> Result<Grid<bool>, MarginError> {
     let outside = flood_fill::from_border(open);
     let mut enclosed = open.clone();
     for (enclosed, &out) in enclosed.values_mut().iter_mut().zip(outside.values()) {
         *enclosed &= !out;
     }
     let regions = Components::of(&enclosed);
-    let (label, area) = regions.largest().filter(|&(_, area)| area >= LEAST_AREA).ok_or_else(|| {
-        let problem = "the drawing encloses no region: close the outline, or give the root to \
+    let (label, area) =
+        regions.largest().filter(|&(_, area)| area >= LEAST_AREA).ok_or_else(|| {
+            let problem = "the drawing encloses no region: close the outline, or give the root to \
                        learn where it is open";
-        MarginError::Picture(problem.into())
-    })?;
+            MarginError::Picture(problem.into())
+        })?;
     let others = regions.areas[1..].iter().filter(|&&other| other * 10 > area).count();
     if others > 1 {
         notes.push(format!("the drawing encloses {others} regions: took the largest"));

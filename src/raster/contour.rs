@@ -39,7 +39,8 @@ pub fn contours(field: &Grid<f32>, level: f32) -> Vec<Vec<DVec2>> {
                 order.push(from);
             };
             let mean = || {
-                (value(x, y) + value(x + 1, y) + value(x, y + 1) + value(x + 1, y + 1)) * 0.25 > level
+                (value(x, y) + value(x + 1, y) + value(x, y + 1) + value(x + 1, y + 1)) * 0.25
+                    > level
             };
             // What is higher lies on the right of the direction on the screen, left as numbers.
             match case {

@@ -101,10 +101,8 @@ fn simplify(line: &[DVec2], tolerance: f64, kept: &mut Vec<DVec2>) {
 fn thinned(mask: &Grid<bool>) -> Grid<bool> {
     let mut thin = mask.clone();
     let (width, height) = (mask.width(), mask.height());
-    let mut left: Vec<(usize, usize)> = (0..width * height)
-        .filter(|&i| mask.values()[i])
-        .map(|i| (i % width, i / width))
-        .collect();
+    let mut left: Vec<(usize, usize)> =
+        (0..width * height).filter(|&i| mask.values()[i]).map(|i| (i % width, i / width)).collect();
     loop {
         let before = left.len();
         for pass in 0..2 {
@@ -122,9 +120,8 @@ fn thinned(mask: &Grid<bool>) -> Grid<bool> {
 }
 
 fn removable(thin: &Grid<bool>, (x, y): (usize, usize), pass: usize) -> bool {
-    let p = AROUND.map(|(dx, dy)| {
-        thin.get(x as isize + dx, y as isize + dy).copied().unwrap_or(false)
-    });
+    let p =
+        AROUND.map(|(dx, dy)| thin.get(x as isize + dx, y as isize + dy).copied().unwrap_or(false));
     let count = p.iter().filter(|&&on| on).count();
     let rises = (0..8).filter(|&k| !p[k] && p[(k + 1) % 8]).count();
     let [above, _, right, _, below, _, left, _] = p;

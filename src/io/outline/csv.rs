@@ -21,9 +21,8 @@ pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlinePr
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let problem = |what: String| {
-            Err(OutlineProblem::Content(format!("line {}: {what}", number + 1)))
-        };
+        let problem =
+            |what: String| Err(OutlineProblem::Content(format!("line {}: {what}", number + 1)));
         let fields = fields(line);
         let numbers: Vec<Option<f64>> =
             fields.iter().take(2).map(|field| field.parse().ok()).collect();
@@ -34,7 +33,9 @@ pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlinePr
                 heading_seen = true;
                 continue;
             }
-            [_] => return problem(format!("\"{}\" is one column; a point has x and y", short(line))),
+            [_] => {
+                return problem(format!("\"{}\" is one column; a point has x and y", short(line)));
+            }
             _ => return problem(format!("\"{}\" is not a pair of numbers", short(line))),
         };
         if !(x.is_finite() && y.is_finite()) {
@@ -113,7 +114,10 @@ mod tests {
 
     #[test]
     fn problems_name_their_line() {
-        assert_eq!(problem("x,y\n0,0\n1,NaN\n"), "line 3: \"1,NaN\" is not a pair of finite numbers");
+        assert_eq!(
+            problem("x,y\n0,0\n1,NaN\n"),
+            "line 3: \"1,NaN\" is not a pair of finite numbers"
+        );
         assert_eq!(problem("0,0\n\na,b\n"), "line 3: \"a,b\" is not a pair of numbers");
         assert_eq!(problem("0,0\n7\n"), "line 2: \"7\" is one column; a point has x and y");
         assert_eq!(problem("x,y\n"), "has 0 distinct points; a polygon needs at least 3");

@@ -141,6 +141,13 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     if third.width < LEAST_AT_THIRD * typical {
         return None;
     }
+    // Both banks are as long, and the cut goes straight across; else the zip started beside a tip.
+    let (one, other) = ((end + n - attached.from) % n, (attached.to + n - end) % n);
+    let across = (ring[attached.to] - ring[attached.from]).normalize_or_zero();
+    let along = ((ring[attached.to] + ring[attached.from]) * 0.5 - ring[end]).normalize_or_zero();
+    if one.min(other) * 5 < one.max(other) * 3 || across.dot(along).abs() > 0.4 {
+        return None;
+    }
     // The two banks must enclose blade, not the gap between two lobes.
     let count = (attached.to + n - attached.from) % n;
     let body: Vec<DVec2> = (0..=count).map(|k| ring[(attached.from + k) % n]).collect();

@@ -1,11 +1,11 @@
 //! `venation compare`: growth types side by side, labelled, with their measures.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use rayon::prelude::*;
 use venation::document::Document;
 use venation::growth::GrowthType;
-use venation::io::{self, write::Overwrite};
+use venation::io;
 use venation::observer::Silent;
 use venation::pipeline::{self, Leaf};
 use venation::raster::montage::{self, Layout, Panel};
@@ -72,12 +72,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         (None, Some(seed)) => vec![seed],
         (None, None) => vec![document.seed.unwrap_or(1)],
     };
-    for path in args.out.iter().chain(&args.csv) {
-        if path.exists() && !args.force {
-            let problem = format!("{}: exists already; --force overwrites", path.display());
-            return Err(Failure::Exists(problem));
-        }
-    }
+    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
     let work: Vec<(GrowthType, u64)> =
         seeds.iter().flat_map(|&seed| GrowthType::ALL.iter().map(move |&g| (g, seed))).collect();
     let cells: Vec<Cell> = work
@@ -88,11 +83,11 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         .collect::<Result<_, Failure>>()?;
     if let Some(path) = &args.out {
         let png = sheet(&cells)?;
-        save(path, png)?;
+        super::save(path, png)?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if let Some(path) = &args.csv {
-        save(path, table(&cells).into_bytes())?;
+        super::save(path, table(&cells).into_bytes())?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if !context.quiet {
@@ -140,13 +135,6 @@ fn sheet(cells: &[Cell]) -> Result<Vec<u8>, Failure> {
     let panel_px = first.textures.front.base_colour.width().min(720);
     let picture = montage::sheet(&title, &panels, Layout { columns: panels.len(), panel_px });
     Ok(io::image::colour_png(&picture, &io::image::Caption::default()))
-}
-
-fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    io::write::write_files(folder, &[(name, bytes)], Overwrite::Force)
-        .map_err(|error| Failure::Input(error.to_string()))
 }
 
 fn table(cells: &[Cell]) -> String {

@@ -98,9 +98,11 @@ impl<'a> Shape<'a> {
         for &stalk in &self.stalks {
             offer(self.score(stalk.attachment) + worth(&stalk), Base::on(stalk));
         }
-        for (at, depth) in self.notches() {
-            let worth = weight::NOTCH * (depth / (0.08 * self.size)).min(1.0);
-            offer(self.score(at) + worth, Base { at, found: Found::Notch, stalk: None });
+        for (at, notch) in self.notches() {
+            offer(
+                self.score(at) + weight::NOTCH * notch,
+                Base { at, found: Found::Notch, stalk: None },
+            );
         }
         for direction in directions() {
             let at = self.exit(self.centre, direction);
@@ -201,7 +203,8 @@ impl<'a> Shape<'a> {
         last.1
     }
 
-    /// The deepest points of the bays of the outline, and how deep under the convex hull.
+    /// The deepest points of the bays of the outline, and how much of a notch each is, 0 to 1: both
+    /// deep, and not just the hollow flank of something that sticks out.
     fn notches(&self) -> Vec<(DVec2, f64)> {
         let n = self.ring.len();
         let hull = convex_hull(self.ring);
@@ -216,7 +219,9 @@ impl<'a> Shape<'a> {
             if let Some(i) = inner.max_by(|&i, &j| depth(i).total_cmp(&depth(j)))
                 && depth(i) > 0.015 * self.size
             {
-                notches.push((self.ring[i % n], depth(i)));
+                let deep = (depth(i) / (0.08 * self.size)).min(1.0);
+                let narrow = (depth(i) / (0.12 * a.distance(b))).min(1.0);
+                notches.push((self.ring[i % n], deep * narrow));
             }
         }
         notches

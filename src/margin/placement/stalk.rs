@@ -111,7 +111,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let mut start = 0;
     for (k, chord) in chords.iter().enumerate() {
         widths.push(chord.width);
-        if chord.depth < LEAST_LENGTH * size || chord.depth < 6.0 * step {
+        if chord.depth < LEAST_LENGTH * size || chord.depth < 4.0 * step {
             continue;
         }
         while chords[start].depth < 0.25 * chord.depth {

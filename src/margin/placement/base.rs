@@ -126,7 +126,33 @@ impl<'a> Shape<'a> {
         {
             base = Base::on(stalk);
         }
+        if base.stalk.is_none()
+            && let Some(nub) = self.nub(base.at)
+        {
+            base = Base { at: nub, found: Found::Nub, stalk: None };
+        }
         base
+    }
+
+    /// The sharpest thing that sticks out of the outline beside `at`: the rest of a petiole too short
+    /// or too conical for a stalk.
+    fn nub(&self, at: DVec2) -> Option<DVec2> {
+        const REACH: f64 = 0.12;
+        const ARM: f64 = 0.05;
+        const LEAST_SHARPNESS: f64 = 0.2;
+        let n = self.ring.len();
+        let arm = (ARM * self.size / self.ring[0].distance(self.ring[1])).ceil() as usize;
+        let arm = arm.clamp(1, n / 4);
+        let sharpness = |i: usize| {
+            let (a, b) = (self.ring[(i + n - arm) % n], self.ring[(i + arm) % n]);
+            (self.ring[i] - a).perp_dot(b - a) / (b - a).length_squared().max(1e-12)
+        };
+        (0..n)
+            .filter(|&i| self.ring[i].distance(at) < REACH * self.size)
+            .map(|i| (sharpness(i), i))
+            .filter(|&(sharp, _)| sharp > LEAST_SHARPNESS)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, i)| self.ring[i])
     }
 
     /// What speaks for a base at `at`, whatever is there.

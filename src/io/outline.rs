@@ -337,7 +337,8 @@ fn attachment_note(placed: &Placed, base: DVec2, kind: OutlineKind) -> String {
     let how = match placed.found {
         Found::Given => "petiole attachment as given",
         Found::Stalk => "petiole cut off; attachment",
-        Found::Notch => "petiole attachment found in the notch of the base",
+        Found::Nub => "petiole attachment found where the base sticks out,",
+        Found::Notch => "petiole attachment found in the notch of the base,",
         Found::End => "no petiole: attachment assumed",
     };
     match kind {

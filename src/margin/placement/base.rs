@@ -98,9 +98,11 @@ impl<'a> Shape<'a> {
         for &stalk in &self.stalks {
             offer(self.score(stalk.attachment) + worth(&stalk), Base::on(stalk));
         }
-        for (at, depth) in self.notches() {
-            let worth = weight::NOTCH * (depth / (0.08 * self.size)).min(1.0);
-            offer(self.score(at) + worth, Base { at, found: Found::Notch, stalk: None });
+        for (at, notch) in self.notches() {
+            offer(
+                self.score(at) + weight::NOTCH * notch,
+                Base { at, found: Found::Notch, stalk: None },
+            );
         }
         for direction in directions() {
             let at = self.exit(self.centre, direction);
@@ -124,7 +126,33 @@ impl<'a> Shape<'a> {
         {
             base = Base::on(stalk);
         }
+        if base.stalk.is_none()
+            && let Some(nub) = self.nub(base.at)
+        {
+            base = Base { at: nub, found: Found::Nub, stalk: None };
+        }
         base
+    }
+
+    /// The sharpest thing that sticks out of the outline beside `at`: the rest of a petiole too short
+    /// or too conical for a stalk.
+    fn nub(&self, at: DVec2) -> Option<DVec2> {
+        const REACH: f64 = 0.12;
+        const ARM: f64 = 0.05;
+        const LEAST_SHARPNESS: f64 = 0.2;
+        let n = self.ring.len();
+        let arm = (ARM * self.size / self.ring[0].distance(self.ring[1])).ceil() as usize;
+        let arm = arm.clamp(1, n / 4);
+        let sharpness = |i: usize| {
+            let (a, b) = (self.ring[(i + n - arm) % n], self.ring[(i + arm) % n]);
+            (self.ring[i] - a).perp_dot(b - a) / (b - a).length_squared().max(1e-12)
+        };
+        (0..n)
+            .filter(|&i| self.ring[i].distance(at) < REACH * self.size)
+            .map(|i| (sharpness(i), i))
+            .filter(|&(sharp, _)| sharp > LEAST_SHARPNESS)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, i)| self.ring[i])
     }
 
     /// What speaks for a base at `at`, whatever is there.
@@ -201,7 +229,8 @@ impl<'a> Shape<'a> {
         last.1
     }
 
-    /// The deepest points of the bays of the outline, and how deep under the convex hull.
+    /// The deepest points of the bays of the outline, and how much of a notch each is, 0 to 1: both
+    /// deep, and not just the hollow flank of something that sticks out.
     fn notches(&self) -> Vec<(DVec2, f64)> {
         let n = self.ring.len();
         let hull = convex_hull(self.ring);
@@ -216,7 +245,9 @@ impl<'a> Shape<'a> {
             if let Some(i) = inner.max_by(|&i, &j| depth(i).total_cmp(&depth(j)))
                 && depth(i) > 0.015 * self.size
             {
-                notches.push((self.ring[i % n], depth(i)));
+                let deep = (depth(i) / (0.08 * self.size)).min(1.0);
+                let narrow = (depth(i) / (0.12 * a.distance(b))).min(1.0);
+                notches.push((self.ring[i % n], deep * narrow));
             }
         }
         notches

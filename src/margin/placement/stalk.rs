@@ -111,7 +111,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let mut start = 0;
     for (k, chord) in chords.iter().enumerate() {
         widths.push(chord.width);
-        if chord.depth < LEAST_LENGTH * size || chord.depth < 6.0 * step {
+        if chord.depth < LEAST_LENGTH * size || chord.depth < 4.0 * step {
             continue;
         }
         while chords[start].depth < 0.25 * chord.depth {
@@ -145,7 +145,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let (one, other) = ((end + n - attached.from) % n, (attached.to + n - end) % n);
     let across = (ring[attached.to] - ring[attached.from]).normalize_or_zero();
     let along = ((ring[attached.to] + ring[attached.from]) * 0.5 - ring[end]).normalize_or_zero();
-    if one.min(other) * 5 < one.max(other) * 3 || across.dot(along).abs() > 0.4 {
+    if one.min(other) * 2 < one.max(other) || across.dot(along).abs() > 0.6 {
         return None;
     }
     // The two banks must enclose blade, not the gap between two lobes.

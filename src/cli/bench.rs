@@ -131,7 +131,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Error> {
         results.exponent = benchmark::exponent(&measures);
     }
     if let Some(exponent) = results.exponent {
-        writeln!(out, "time grows as auxins to the power {exponent:.2}")?;
+        writeln!(out, "fitted exponent of time against auxins: {exponent:.2}")?;
     }
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&results).expect("numbers and words") + "\n";

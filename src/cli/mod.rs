@@ -65,6 +65,15 @@ impl From<venation::error::Error> for Failure {
     }
 }
 
+impl From<bench::Error> for Failure {
+    fn from(error: bench::Error) -> Self {
+        match error {
+            bench::Error::Output(error) => error.into(),
+            error => Self::Input(error.to_string()),
+        }
+    }
+}
+
 impl From<venation::document::DocumentError> for Failure {
     fn from(error: venation::document::DocumentError) -> Self {
         Self::Input(error.to_string())
@@ -147,7 +156,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
-        Command::Bench(args) => bench::run(args, &mut context),
+        Command::Bench(args) => Ok(bench::run(args, context.stdout)?),
         Command::Presets(args) => presets::run(args, &mut context),
     }
 }

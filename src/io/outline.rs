@@ -162,20 +162,33 @@ fn from_picture(
     };
     let root = options.root.map(|root| DVec2::from(root) / picture.file_pixels);
     let mut traced = trace(kind, &picture, root)?;
+    if kind == OutlineKind::Photo && options.kind == OutlineKind::Auto && is_a_line(&traced.outline)
+    {
+        // A drawing that does not close. Given a root, the rule for sketches says where it leaks.
+        let _ = trace(OutlineKind::Sketch, &picture, root)?;
+        return Err(OutlineProblem::content(
+            "shows thin lines that enclose no blade; if it is a drawing, close its outline (a root \
+             inside tells where it is open)",
+        ));
+    }
     notes.append(&mut traced.notes);
     traced.notes = notes;
     Ok(Found2d { traced, kind, unit: picture.file_pixels, y_down: true })
 }
 
-fn trace(
-    kind: OutlineKind,
-    picture: &Picture,
-    root: Option<DVec2>,
-) -> Result<Traced, MarginError> {
+fn trace(kind: OutlineKind, picture: &Picture, root: Option<DVec2>) -> Result<Traced, MarginError> {
     match kind {
         OutlineKind::Sketch => sketch::trace(picture, root),
         _ => silhouette::trace(picture, root),
     }
+}
+
+/// Whether an outline surrounds a drawn line and no blade: even blades of grass are wider.
+fn is_a_line(outline: &[DVec2]) -> bool {
+    const LEAST_WIDTH: f64 = 0.01;
+    let extent = Rect::around(outline.iter().copied()).size().max_element();
+    let width = 2.0 * polygon::signed_area(outline).abs() / polygon::perimeter(outline);
+    width < LEAST_WIDTH * extent
 }
 
 fn from_text(
@@ -230,10 +243,10 @@ fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
         Some(mended) => {
             *outline = mended;
             let at = at * found.unit;
-            found.traced.notes.push(format!(
-                "the outline crossed itself near {}: loops cut off",
-                place_name(at)
-            ));
+            found
+                .traced
+                .notes
+                .push(format!("the outline crossed itself near {}: loops cut off", place_name(at)));
             Ok(())
         }
         None => Err(OutlineProblem::Content(format!(
@@ -291,13 +304,15 @@ fn place(found: Found2d, options: &OutlineOptions) -> Result<ImportedOutline, Ou
     let cuts: Vec<Vec<DVec2>> =
         traced.cuts.iter().map(|line| line.iter().map(|&p| p * up).collect()).collect();
     let root = options.root.map(|root| DVec2::from(root) * up / unit);
-    // A root in a sketch marks the blade by lying in it: only its nearest margin is the base.
-    let placed = placement::place(&outline, &cuts, root, options.length_mm).map_err(|error| {
-        match (error, options.root) {
-            (MarginError::Root { problem, .. }, Some([x, y])) => MarginError::Root { x, y, problem },
-            (error, _) => error,
-        }
-    })?;
+    let placed =
+        placement::place(&outline, &cuts, root, options.length_mm).map_err(|error| {
+            match (error, options.root) {
+                (MarginError::Root { problem, .. }, Some([x, y])) => {
+                    MarginError::Root { x, y, problem }
+                }
+                (error, _) => error,
+            }
+        })?;
     // Guarantees are the margin's to give.
     let hint = "mend the outline there";
     let points = placed.outline.clone();
@@ -347,9 +362,10 @@ mod tests {
 
     #[test]
     fn a_small_loop_is_cut_off_and_a_large_one_is_not() {
-        let circle = |n: usize| (0..n).map(move |i| {
-            DVec2::from_angle(std::f64::consts::TAU * i as f64 / n as f64) * 10.0
-        });
+        let circle = |n: usize| {
+            (0..n)
+                .map(move |i| DVec2::from_angle(std::f64::consts::TAU * i as f64 / n as f64) * 10.0)
+        };
         let mut points: Vec<DVec2> = circle(60).collect();
         points.swap(10, 11);
         assert!(polygon::self_crossing(&points).is_some());

@@ -87,9 +87,7 @@ fn too_large(width: u32, height: u32, most: u64) -> OutlineProblem {
     ))
 }
 
-fn read_png(
-    reader: impl BufRead + Seek,
-) -> Result<(Picture, Vec<String>), OutlineProblem> {
+fn read_png(reader: impl BufRead + Seek) -> Result<(Picture, Vec<String>), OutlineProblem> {
     let broken = |error: png::DecodingError| {
         let what = error.to_string();
         let what = if what.starts_with("CRC error") { "a checksum does not match" } else { &what };
@@ -233,7 +231,8 @@ fn read_jpeg(file: File) -> Result<(Picture, Vec<String>), OutlineProblem> {
         DynamicImage::ImageRgb8(image) => image.into_raw(),
         other => other.into_rgba8().into_raw(),
     };
-    let channels = if samples.len() == wide as usize * high as usize * channels { channels } else { 4 };
+    let channels =
+        if samples.len() == wide as usize * high as usize * channels { channels } else { 4 };
     let mut boxes = Boxes::new(wide as usize, high as usize, factor as usize);
     for row in samples.chunks_exact(wide as usize * channels) {
         boxes.add_row(row.chunks_exact(channels).map(rgba));

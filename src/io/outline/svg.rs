@@ -42,8 +42,7 @@ pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlinePr
     if found.len() > 1 {
         // A page painted behind the leaf is no leaf.
         let whole = polygon_area_of_page(&tree, &from_page);
-        let leaves: Vec<_> =
-            found.iter().filter(|p| !is_page(p, whole)).cloned().collect();
+        let leaves: Vec<_> = found.iter().filter(|p| !is_page(p, whole)).cloned().collect();
         if !leaves.is_empty() {
             found = leaves;
         }
@@ -54,7 +53,9 @@ pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlinePr
         .max_by(|a, b| area(a).total_cmp(&area(b)))
         .filter(|p| p.len() > 2 && area(p) > 0.0)
         .ok_or_else(|| {
-            OutlineProblem::content("has no path that encloses an area (pictures and text do not count)")
+            OutlineProblem::content(
+                "has no path that encloses an area (pictures and text do not count)",
+            )
         })?;
     let mut notes = Vec::new();
     if shapes > 1 {
@@ -73,7 +74,9 @@ fn drawing_from_page(xml: &usvg::roxmltree::Document<'_>, tree: &usvg::Tree) -> 
     let (width, height) = (tree.size().width(), tree.size().height());
     let to_page = match (&view_box[..], tree.root().children()) {
         // The map to the page is the outermost group, there only when it does something.
-        (&[x, y, w, h], [usvg::Node::Group(group)]) if [x, y, w, h] != [0.0, 0.0, width, height] => {
+        (&[x, y, w, h], [usvg::Node::Group(group)])
+            if [x, y, w, h] != [0.0, 0.0, width, height] =>
+        {
             group.transform()
         }
         _ => Transform::identity(),
@@ -173,7 +176,9 @@ fn cubic(line: &mut Vec<DVec2>, [a, b, c, d]: [DVec2; 4], tolerance: f64) {
     for k in 1..=pieces as usize {
         let t = k as f64 / pieces;
         let s = 1.0 - t;
-        line.push(a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t));
+        line.push(
+            a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t),
+        );
     }
 }
 

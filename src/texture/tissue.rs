@@ -115,3 +115,25 @@ pub(super) fn grain(x: f32, y: f32, size: f32, seed: u32) -> f32 {
 pub(super) fn grain_size(pixels_per_mm: f32) -> f32 {
     GRAIN_MM.max(1.7 / pixels_per_mm)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_net_is_the_same_however_one_comes_to_a_place() {
+        let mut walked = Net::new(0.85, 5);
+        for i in 0..500 {
+            let (x, y) = (i as f32 * 0.13 - 20.0, i as f32 * 0.07 - 9.0);
+            let (here, fresh) = (walked.at(x, y), Net::new(0.85, 5).at(x, y));
+            assert_eq!((here.border, here.tone), (fresh.border, fresh.tone));
+            assert!(here.border >= 0.0 && here.border < 0.85 && (0.0..1.0).contains(&here.tone));
+        }
+    }
+
+    #[test]
+    fn structures_finer_than_the_texels_fade() {
+        assert_eq!(shown(0.27, 4.0), 0.0);
+        assert_eq!(shown(0.85, 12.0), 1.0);
+    }
+}

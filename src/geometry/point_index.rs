@@ -36,15 +36,15 @@ impl PointIndex {
         Self { tree: Some(tree.expect("finite points can always be split into leaves")) }
     }
 
-    /// Calls `visit` with every point within `radius` of `p`, bounds included, in no order; points a
-    /// rounding error outside may come too.
-    pub fn for_each_within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(u32)) {
+    /// Calls `visit` with every point within `radius` of `p`, bounds included, in no order, and its
+    /// squared distance up to rounding; points a rounding error outside may come too.
+    pub fn for_each_within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(u32, f64)) {
         let Some(tree) = &self.tree else { return };
         let radius2 = radius * radius * (1.0 + 1e-12);
         tree.query(&p.to_array())
             .within::<SquaredEuclidean<f64>>(radius2)
             .unsorted()
-            .visit(|hit| visit(hit.item));
+            .visit(|hit| visit(hit.item, hit.distance));
     }
 
     /// The point nearest to `p` within a squared distance of `limit2`; the first of the slice among
@@ -82,7 +82,7 @@ mod tests {
         for _ in 0..300 {
             let p = DVec2::new(rng.between(-0.2, 1.2), rng.between(-0.2, 1.2));
             let mut found = Vec::new();
-            index.for_each_within(p, 0.2, |i| found.push(i));
+            index.for_each_within(p, 0.2, |i, _| found.push(i));
             found.sort_unstable();
             let within = |i: &u32| points[*i as usize].distance(p) <= 0.2;
             assert_eq!(found, (0..points.len() as u32).filter(within).collect::<Vec<_>>());

@@ -12,9 +12,11 @@
 //!
 //! Lengths in the settings are millimetres of the blade at the step in question.
 
+mod claims;
 mod extend;
 mod open;
 mod sources;
+mod tiles;
 
 use glam::DVec2;
 
@@ -85,11 +87,10 @@ pub fn grow(
                 format!("makes more than {MAX_NODES} vein nodes; raise it, or throw fewer darts");
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));
         }
-        // Remove the sources that have been reached.
-        calls.take_over(before, &nodes, metric);
-        let dead = calls.kill(metric);
+        // Let the new nodes take sources over, and remove those that have been reached.
+        let dead = calls.take_over(before, &nodes, metric);
         let stands_still = dead.is_empty() && nodes.len() == before;
-        supply.forget(dead);
+        supply.forget(&dead);
         made += 1;
         nodes_after_step.push(nodes.len() as u32);
         if made % pace == 0 || made == steps {

@@ -1,8 +1,10 @@
 //! The slowly varying fields of a leaf on a coarse grid, read by interpolation.
 //!
-//! Distances are exact at the nodes: the nearest node that a line passes comes from the distance
-//! transform, the rest from that line itself. Between the nodes they are linear, which a distance
-//! is everywhere but at the ridges.
+//! Distances: the distance transform says which node's cell holds the nearest line, and the distance
+//! is measured to that line itself. The cell is known by its centre only, so where two stretches are
+//! about equally far the wrong one may be taken, and between the nodes a ridge is cut off. On a lobed
+//! outline the error stayed below 0.07 node spacings (a seventh of a texel) near the margin and below
+//! 0.36 deep inside, where nothing sharp depends on it; a test holds both.
 
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
@@ -338,7 +340,7 @@ mod tests {
     use crate::veins::VeinGraph;
 
     #[test]
-    fn distances_to_the_margin_are_those_of_a_full_search() {
+    fn distances_to_the_margin_are_near_those_of_a_full_search() {
         let corner = |i: usize| {
             let angle = std::f64::consts::TAU * (i as f64 - 24.0) / 96.0;
             let r = 30.0 * (1.0 + 0.15 * libm::cos(6.0 * angle));
@@ -353,11 +355,12 @@ mod tests {
         let bare = Venation::new(VeinGraph::new(), Vec::new(), Vec::new());
         let reach = Reach { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
         let size = 200;
+        let spacing = frame.side_mm / Guide::side_for(size) as f64;
         let guide = Guide::new(&margin, &bare, &frame, size, &reach, 1);
         let edges = SegmentIndex::of_polygon(margin.outline());
-        for y in (0..size).step_by(3) {
+        for y in 0..size {
             let row = guide.row(y);
-            for x in (0..size).step_by(3) {
+            for x in 0..size {
                 let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let p = frame.leaf_from_pixel(centre, size);
                 let distance = edges.nearest(p, 1000.0).expect("an edge").0.sqrt();
@@ -366,8 +369,8 @@ mod tests {
                     continue; // Far outside nobody asks; at the frame the guide is constant.
                 }
                 let found = f64::from(row.at(x).edge);
-                // Half a texel at the ridges, where the guide is not linear.
-                assert!((found - expected).abs() < 0.2, "{p}: {found} {expected}");
+                let limit = if expected < 4.0 { 0.1 } else { 0.5 } * spacing;
+                assert!((found - expected).abs() < limit, "{p}: {found} {expected}");
             }
         }
     }

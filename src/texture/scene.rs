@@ -245,7 +245,7 @@ fn speckles(paint: &Paint<'_>, margin: &Margin, seed: Seed) -> Vec<DVec2> {
     let bounds = margin.bounds();
     let mut rng = seed.stream(Stage::Speckles);
     let mut speckles = Vec::new();
-    // A margin fills more than a hundredth of its box, or it would not have been made.
+    // A bound, so that a blade which is a mere sliver of its box ends with fewer, not never.
     for _ in 0..count.saturating_mul(100) {
         if speckles.len() as u64 == count {
             break;

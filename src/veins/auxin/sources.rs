@@ -124,7 +124,7 @@ impl<'a> Supply<'a> {
                 }
             }
         }
-        calls.index_newborn();
+        calls.keep_index();
         Ok(())
     }
 

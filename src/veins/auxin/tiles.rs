@@ -102,33 +102,32 @@ impl Tiles {
             if members.is_empty() || self.bound2[tile] == 0.0 {
                 continue;
             }
-            // The new nodes near enough to matter to anyone in the tile.
+            // The new nodes that matter to anyone in the tile: near enough to be nearer than what a
+            // member has, and, seen from the centre, not a diagonal farther than the nearest of them.
             let corner = DVec2::new((tile % self.columns) as f64, (tile / self.columns) as f64);
             let centre = (self.bounds.min + corner * self.side + half) * metric.stretch;
-            let radius = (self.bound2[tile].sqrt() + half_diagonal) * (1.0 + 1e-9);
+            let distance2 = |tip: u32| stretched[tip as usize].distance_squared(centre);
+            let nearest2 = match &index {
+                Some(index) => index.nearest_distance2(centre),
+                None => (0..tips.len() as u32).map(distance2).fold(f64::INFINITY, f64::min),
+            };
+            let radius = (self.bound2[tile].sqrt() + half_diagonal)
+                .min(nearest2.sqrt() + 2.0 * half_diagonal)
+                * (1.0 + 1e-9);
+            if nearest2 > radius * radius {
+                continue;
+            }
             candidates.clear();
-            if radius == f64::INFINITY {
-                candidates.extend(0..tips.len() as u32);
-            } else if let Some(index) = &index {
+            if let Some(index) = &index {
                 index.for_each_within(centre, radius, |tip, _| candidates.push(tip));
                 candidates.sort_unstable();
             } else {
-                let near = |tip: &u32| {
-                    stretched[*tip as usize].distance_squared(centre) <= radius * radius
-                };
+                let near = |tip: &u32| distance2(*tip) <= radius * radius;
                 candidates.extend((0..tips.len() as u32).filter(near));
-            }
-            if candidates.is_empty() {
-                continue;
             }
             members.retain(|&source| {
                 let p = positions[source as usize];
-                let tip = match &index {
-                    Some(index) if candidates.len() > FEW => {
-                        index.nearest_within(p * metric.stretch, f64::INFINITY)
-                    }
-                    _ => nearest_of(&candidates, tips, p, metric),
-                };
+                let tip = nearest_of(&candidates, tips, p, metric);
                 tip.is_none_or(|tip| offer(source, tip))
             });
         }

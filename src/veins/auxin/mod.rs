@@ -22,7 +22,7 @@ use glam::DVec2;
 
 use super::graph::VeinGraph;
 use super::{Unreached, VeinError, VeinSpec};
-use crate::growth::{GrowingBlade, GrowthType};
+use crate::growth::{GrowingBlade, GrowthType, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
 use extend::Nodes;
@@ -46,6 +46,14 @@ pub struct Grown {
 /// More nodes than this are a slip of the keyboard: a leaf with every areole of a real one has 1.5
 /// million.
 const MAX_NODES: usize = 10_000_000;
+
+/// How many nodes the blade can hold before they stand closer than a quarter of a step everywhere,
+/// as children of one node never do. Without this limit a shower of darts with no least distances
+/// lets veins double in every step, until millions of nodes stand in one place.
+fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
+    let step = metric.reach(metric.length(spec.node_step_mm));
+    10_000.0 + 16.0 * blade.mature().area_mm2() / step.element_product()
+}
 
 /// Grows open venation from `roots` (in the frame of the mature leaf).
 ///
@@ -82,9 +90,9 @@ pub fn grow(
         for node in called {
             nodes.extend(node, &calls, blade, step, metric);
         }
-        if nodes.len() > MAX_NODES {
-            let problem =
-                format!("makes more than {MAX_NODES} vein nodes; raise it, or throw fewer darts");
+        if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
+            let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
+                           throw fewer darts";
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));
         }
         // Let the new nodes take sources over, and remove those that have been reached.

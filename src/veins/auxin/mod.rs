@@ -18,8 +18,6 @@ mod open;
 mod sources;
 mod tiles;
 
-use glam::DVec2;
-
 use super::graph::VeinGraph;
 use super::{Unreached, VeinError, VeinSpec};
 use crate::growth::{GrowingBlade, GrowthType, Metric};
@@ -55,7 +53,8 @@ fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
     10_000.0 + 16.0 * blade.mature().area_mm2() / step.element_product()
 }
 
-/// Grows open venation from `roots` (in the frame of the mature leaf).
+/// Grows open venation from the veins of `start` (in the frame of the mature leaf): bare roots, or
+/// guides, which are there from the first step on.
 ///
 /// # Errors
 ///
@@ -63,13 +62,13 @@ fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
 pub fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
-    roots: &[DVec2],
+    start: VeinGraph,
     rng: &mut Rng,
     observer: &mut dyn Observer,
 ) -> Result<Grown, VeinError> {
     let mut supply = Supply::new(spec, blade)?;
     let first = *blade.steps().start();
-    let mut nodes = Nodes::new(spec, blade, roots, blade.metric(first));
+    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first));
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }

@@ -18,6 +18,8 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// Where the particles start.
+    Particles,
     /// Where the speckles lie.
     Speckles,
     /// The fine structure of the tissue between the veins.
@@ -30,6 +32,7 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
             Self::Petiole => "stage/petiole",

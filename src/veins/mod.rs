@@ -7,6 +7,7 @@ pub mod auxin;
 pub mod graph;
 pub mod metrics;
 pub mod orders;
+pub mod particles;
 pub mod widths;
 
 use glam::DVec2;
@@ -18,12 +19,15 @@ use crate::observer::Observer;
 use crate::parameter::{Kind, Parameters, parameters, words};
 use crate::seed::{Seed, Stage};
 pub use graph::{NodeId, VeinGraph, VeinKind};
+use particles::ParticleSpec;
 
 words! {
     /// How veins are made.
     pub enum Algorithm {
         /// Veins grow towards auxin sources and never meet (Runions et al. 2005, open venation).
         AuxinOpen = "auxin-open",
+        /// Veins are the trails of particles that flow to the petiole (Rodkaew et al. 2002).
+        Particles = "particles",
     }
 }
 
@@ -50,6 +54,8 @@ parameters! {
         tip_radius_mm: number(0.03, 0.0001..=10.0, "mm"),
         /// Murray's exponent: the parent's radius to this power is the sum over its children.
         murray_exponent: number(3.0, 1.0..=10.0, ""),
+        /// Particles, for `algorithm = "particles"`.
+        particles: group(ParticleSpec, ParticleSpec::default()),
     }
 }
 
@@ -235,6 +241,7 @@ pub fn grow_from(
         Algorithm::AuxinOpen => {
             auxin::grow(spec, blade, roots, &mut seed.stream(Stage::AuxinSources), observer)?
         }
+        Algorithm::Particles => return flow(spec, blade, roots, seed, observer),
     };
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
     let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
@@ -249,8 +256,28 @@ pub fn grow_from(
     })
 }
 
+/// Veins as the trails of particles in the finished blade.
+fn flow(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    roots: &[DVec2],
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Venation, VeinError> {
+    let roots: Vec<DVec2> = roots.iter().map(|&p| blade.finished_from_mature(p)).collect();
+    let mut rng = seed.stream(Stage::Particles);
+    let flowed = particles::grow(&spec.particles, blade.finished(), &roots, &mut rng, observer)?;
+    // Every tip is one particle: Murray's law on tips is his law on energy.
+    let tip =
+        widths::radius(spec.tip_radius_mm, spec.particles.initial_energy, spec.murray_exponent);
+    let radii = widths::murray(&flowed.graph, tip, spec.murray_exponent);
+    let orders = orders::by_width(&flowed.graph, &radii);
+    Ok(Venation { sources: flowed.particles, ..Venation::new(flowed.graph, radii, orders) })
+}
+
 /// Refuses settings under which growth would make no sense or never end.
 fn check(spec: &VeinSpec) -> Result<(), VeinError> {
+    particles::check(&spec.particles)?;
     let defaults = VeinSpec::parameters();
     let value = |key: &str| match key {
         "spawn_rate" => spec.spawn_rate,
@@ -264,6 +291,10 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
     };
     for parameter in &defaults {
         let Kind::Number { min, max, .. } = parameter.kind else { continue };
+        if parameter.key.contains('.') {
+            // Groups check their own.
+            continue;
+        }
         let value = value(&parameter.key);
         if !(min..=max).contains(&value) {
             let key = format!("veins.{}", parameter.key);

@@ -169,6 +169,8 @@ struct Ways {
     rows: usize,
     /// A root, or a cell's number behind the roots.
     target: Vec<u32>,
+    /// How far it is to a root (mm); nothing where there is no way.
+    distance: Vec<f64>,
     /// Cells inside without a way.
     lost: usize,
     longest: f64,
@@ -176,8 +178,17 @@ struct Ways {
 
 impl Ways {
     fn none() -> Self {
-        let (min, target) = (DVec2::ZERO, Vec::new());
-        Self { min, cell: 1.0, columns: 0, rows: 0, target, lost: 0, longest: 0.0 }
+        let (target, distance) = (Vec::new(), Vec::new());
+        Self {
+            min: DVec2::ZERO,
+            cell: 1.0,
+            columns: 0,
+            rows: 0,
+            target,
+            distance,
+            lost: 0,
+            longest: 0.0,
+        }
     }
 
     fn centre(&self, cell: usize) -> DVec2 {
@@ -212,14 +223,11 @@ impl Ways {
         let size = bounds.size() / cell;
         let (columns, rows) = (size.x as usize + 1, size.y as usize + 1);
         let n = columns * rows;
-        let target = vec![NONE; n];
-        let mut ways = Self { min: bounds.min, cell, columns, rows, target, lost: 0, longest: 0.0 };
+        let (target, distance) = (vec![NONE; n], vec![f64::INFINITY; n]);
+        let mut ways =
+            Self { min: bounds.min, cell, columns, rows, target, distance, lost: 0, longest: 0.0 };
         let inside: Vec<bool> = (0..n).map(|c| walls.edges.contains(ways.centre(c))).collect();
-        let mut search = Search {
-            distance: vec![f64::INFINITY; n],
-            closed: vec![false; n],
-            open: BinaryHeap::new(),
-        };
+        let mut search = Search { closed: vec![false; n], open: BinaryHeap::new() };
         for (i, &root) in roots.iter().enumerate() {
             // The nearest ring of cells that see the root: its own may be outside, in a narrow base.
             for ring in 0..columns.max(rows) as isize {
@@ -247,20 +255,20 @@ impl Ways {
                 let by_neighbour = ways
                     .ring(here, 1)
                     .filter(|&k| search.closed[k] && walls.free(at, ways.centre(k)))
-                    .map(|k| (search.distance[k] + ways.centre(k).distance(at), k))
+                    .map(|k| (ways.distance[k] + ways.centre(k).distance(at), k))
                     .reduce(|a, b| if b < a { b } else { a });
                 let Some((distance, k)) = by_neighbour else {
                     // Offered again when another neighbour is closed.
-                    (ways.target[c], search.distance[c]) = (NONE, f64::INFINITY);
+                    (ways.target[c], ways.distance[c]) = (NONE, f64::INFINITY);
                     continue;
                 };
-                (ways.target[c], search.distance[c]) = ((roots.len() + k) as u32, distance);
+                (ways.target[c], ways.distance[c]) = ((roots.len() + k) as u32, distance);
             }
             search.closed[c] = true;
-            ways.longest = ways.longest.max(search.distance[c]);
+            ways.longest = ways.longest.max(ways.distance[c]);
             let target = ways.target[c];
             let corner = ways.point(target, roots);
-            let before = search.distance[c] - at.distance(corner);
+            let before = ways.distance[c] - at.distance(corner);
             for k in ways.ring(here, 1) {
                 if inside[k] && !search.closed[k] {
                     let distance = before + ways.centre(k).distance(corner);
@@ -284,20 +292,29 @@ impl Ways {
         if let Some(c) = c.filter(|&c| self.target[c] != NONE) {
             return Some(self.point(self.target[c], roots));
         }
-        // A cell at the margin, its middle outside: by the nearest cell around that has a way.
-        (1..=2).find_map(|ring| {
-            self.ring(here, ring)
-                .filter(|&k| self.target[k] != NONE && walls.free(p, self.centre(k)))
-                .map(|k| (p.distance_squared(self.centre(k)), k))
-                .reduce(|a, b| if b < a { b } else { a })
-                .map(|(_, k)| self.centre(k))
-        })
+        // A cell at the margin, its middle outside: for what the cells around make for, the one with
+        // the shortest way; else for the nearest of them.
+        let around = || {
+            let cells = (1..=2).flat_map(|ring| self.ring(here, ring));
+            cells.filter(|&k| self.target[k] != NONE)
+        };
+        let least = |a: (f64, usize), b: (f64, usize)| if b < a { b } else { a };
+        let by_target = around().filter_map(|k| {
+            let corner = self.point(self.target[k], roots);
+            let on = self.distance[k] - self.centre(k).distance(corner);
+            walls.free(p, corner).then(|| (p.distance(corner) + on, k))
+        });
+        if let Some((_, k)) = by_target.reduce(least) {
+            return Some(self.point(self.target[k], roots));
+        }
+        let in_sight = around().filter(|&k| walls.free(p, self.centre(k)));
+        let nearest = in_sight.map(|k| (p.distance_squared(self.centre(k)), k)).reduce(least);
+        nearest.map(|(_, k)| self.centre(k))
     }
 }
 
 /// The search so far.
 struct Search {
-    distance: Vec<f64>,
     closed: Vec<bool>,
     /// Distances (their bits: they order like numbers at or above zero) and cells.
     open: BinaryHeap<Reverse<(u64, u32)>>,
@@ -305,8 +322,8 @@ struct Search {
 
 impl Search {
     fn offer(&mut self, ways: &mut Ways, cell: usize, distance: f64, target: u32) {
-        if distance < self.distance[cell] {
-            self.distance[cell] = distance;
+        if distance < ways.distance[cell] {
+            ways.distance[cell] = distance;
             ways.target[cell] = target;
             self.open.push(Reverse((distance.to_bits(), cell as u32)));
         }

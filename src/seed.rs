@@ -20,6 +20,8 @@ pub enum Stage {
     AuxinSources,
     /// How the guided veins vary.
     Guides,
+    /// Where the particles start.
+    Particles,
     /// Where the speckles lie.
     Speckles,
     /// The fine structure of the tissue between the veins.
@@ -33,6 +35,7 @@ impl Stage {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
             Self::Guides => "stage/guides",
+            Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
             Self::Petiole => "stage/petiole",

@@ -129,7 +129,7 @@ struct Cli {
 enum Command {
     /// Make leaves: textures, a card, outlines and graphs.
     Generate(Box<generate::Args>),
-    /// Growth types side by side, as one labelled picture.
+    /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
     /// Time the growth of veins against the number of auxin sources.
     Bench(bench::Args),

@@ -24,6 +24,8 @@ pub enum Stage {
     Tissue,
     /// The bend of the petiole.
     Petiole,
+    /// Values dealt anew, for comparison with the order they are in.
+    Shuffle,
 }
 
 impl Stage {
@@ -33,6 +35,7 @@ impl Stage {
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
             Self::Petiole => "stage/petiole",
+            Self::Shuffle => "stage/shuffle",
         }
     }
 }

@@ -181,8 +181,7 @@ impl Measures {
             others.push(Measure::new(key, name, value, band));
         };
         if unit == Unit::Millimetre {
-            let per_mm = (unit == Unit::Millimetre).then_some(vla).flatten();
-            other("vla", "vein length per area, mm/mm²", per_mm, Some(2.0..=15.0));
+            other("vla", "vein length per area, mm/mm²", vla, Some(2.0..=15.0));
             let density = ratio(count(list.len()), blade_area);
             other("areole_density", "areoles per mm²", density, Some(3.7..=42.0));
         }

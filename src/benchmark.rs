@@ -1,1 +1,388 @@
-//! (to be written)
+//! Measures of vein growth: a standard workload of any size, workloads from files, and the
+//! performance tables of Foster's report. `venation bench` and `benches/veins.rs` both call this.
+//!
+//! The standard workload: one leaf-like blade, an ellipse twice as long as wide, and N auxin sources
+//! by dart throwing at least 0.7 s apart, where s = √(area / N); kill distance 0.8 s, node step
+//! 0.4 s, attraction distance 4 s, no growth of the blade. It scales so that the picture is the same
+//! at every N, only finer.
+
+use std::time::Instant;
+
+use cpu_time::ThreadTime;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::point_grid::PointGrid;
+use crate::geometry::polygon;
+use crate::geometry::scatter::PolygonScatter;
+use crate::growth::{GrowingBlade, GrowthError, GrowthSpec, GrowthType};
+use crate::margin::{Margin, MarginError};
+use crate::observer::Silent;
+use crate::point_list;
+use crate::seed::{Seed, Stage};
+use crate::veins::{self, VeinGraph, Unreached, VeinError, VeinSpec};
+
+/// Sides of the polygon that stands for the ellipse.
+const SIDES: usize = 256;
+
+/// Length of the standard blade (mm).
+pub const LENGTH_MM: f64 = 100.0;
+
+/// Steps after which a run on a standing blade is given up; it stops by itself when nothing moves.
+const MOST_STEPS: u64 = 100_000;
+
+/// What is measured: a standing blade, sources and the lengths of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Workload {
+    /// The blade.
+    pub margin: Margin,
+    /// Where the vein enters (mm).
+    pub root: DVec2,
+    /// Sources and lengths.
+    pub veins: VeinSpec,
+}
+
+/// What a run took and made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measure {
+    /// Auxin sources.
+    pub sources: usize,
+    /// Vein nodes.
+    pub nodes: usize,
+    /// Steps made.
+    pub steps: u64,
+    /// Time of the growth alone, without widths (s, wall clock of one thread).
+    pub seconds: f64,
+    /// Seconds of the processor, which a busy machine does not stretch.
+    pub cpu_seconds: f64,
+    /// Sources that were not reached, by reason.
+    pub unreached: Unreached,
+}
+
+/// Why there is no measure.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BenchmarkError {
+    /// The text of a workload cannot be read.
+    #[error("no workload: {0}")]
+    Text(String),
+    /// The outline is no margin.
+    #[error(transparent)]
+    Margin(#[from] MarginError),
+    /// The blade cannot grow.
+    #[error(transparent)]
+    Growth(#[from] GrowthError),
+    /// The veins cannot grow.
+    #[error(transparent)]
+    Veins(#[from] VeinError),
+}
+
+/// An ellipse [`LENGTH_MM`] long and half as wide.
+#[must_use]
+pub fn standard_blade() -> Margin {
+    let at = |i: usize| {
+        let angle = std::f64::consts::TAU * i as f64 / SIDES as f64;
+        DVec2::new(0.25 * libm::sin(angle), 0.5 - 0.5 * libm::cos(angle)) * LENGTH_MM
+    };
+    let mut outline: Vec<DVec2> = (0..SIDES).map(at).collect();
+    outline[0] = DVec2::ZERO;
+    outline[SIDES / 2].x = 0.0;
+    Margin::new(outline, SIDES / 2, Vec::new(), "").expect("an ellipse is a margin")
+}
+
+/// The standard workload with `sources` sources.
+#[must_use]
+pub fn standard_workload(sources: usize, seed: Seed) -> Workload {
+    let margin = standard_blade();
+    let spacing = (margin.area_mm2() / sources.max(1) as f64).sqrt();
+    let least = 0.7 * spacing;
+    let scatter = PolygonScatter::new(margin.outline());
+    let mut grid = PointGrid::new(margin.bounds(), least);
+    let mut rng = seed.stream(Stage::AuxinSources);
+    while grid.len() < sources {
+        let p = scatter.point(rng.unit(), rng.unit());
+        let near = |_, q: DVec2| p.distance_squared(q) < least * least;
+        if polygon::contains(margin.outline(), p) && !grid.any_near(p, DVec2::splat(least), near) {
+            grid.push(p);
+        }
+    }
+    let places = (0..sources as u32).map(|i| grid.point(i));
+    Workload::new(margin, DVec2::new(0.0, 0.005) * LENGTH_MM, spacing, places)
+}
+
+impl Workload {
+    fn new(
+        margin: Margin,
+        root: DVec2,
+        spacing: f64,
+        sources: impl Iterator<Item = DVec2>,
+    ) -> Self {
+        let veins = VeinSpec {
+            kill_distance_mm: 0.8 * spacing,
+            node_step_mm: 0.4 * spacing,
+            attraction_distance_mm: 4.0 * spacing,
+            sources_mm: sources.map(|p| p.to_array()).collect(),
+            ..VeinSpec::default()
+        };
+        Self { margin, root, veins }
+    }
+
+    /// A workload from the text of its two files: the parameters (JSON with `polygon`, `root`,
+    /// `kill`, `segment` and `attraction`, in lengths of the blade) and the sources (a line `x,y`
+    /// each).
+    ///
+    /// # Errors
+    ///
+    /// [`BenchmarkError::Text`] says what cannot be read and where.
+    pub fn parse(parameters: &str, sources: &str) -> Result<Self, BenchmarkError> {
+        #[derive(Deserialize)]
+        struct Parameters {
+            polygon: Vec<[f64; 2]>,
+            root: [f64; 2],
+            kill: f64,
+            segment: f64,
+            attraction: f64,
+        }
+        let text = |problem: String| BenchmarkError::Text(problem);
+        let read: Parameters = serde_json::from_str(parameters).map_err(|e| text(e.to_string()))?;
+        let outline: Vec<DVec2> =
+            read.polygon.iter().map(|&p| DVec2::from(p) * LENGTH_MM).collect();
+        let apex = (0..outline.len())
+            .max_by(|&i, &j| outline[i].y.total_cmp(&outline[j].y))
+            .ok_or_else(|| text("the polygon is empty".into()))?;
+        let mut outline = outline;
+        // Printed numbers miss the axis by a rounding error.
+        for i in [0, apex] {
+            if outline[i].x.abs() < 1e-9 * LENGTH_MM {
+                outline[i].x = 0.0;
+            }
+        }
+        let margin = Margin::new(outline, apex, Vec::new(), "mend polygon there")?;
+        let places = point_list::parse(sources).map_err(|e| text(format!("sources, {e}")))?;
+        let places = places.iter().map(|p| p.map(|x| x * LENGTH_MM)).collect();
+        let veins = VeinSpec {
+            kill_distance_mm: read.kill * LENGTH_MM,
+            node_step_mm: read.segment * LENGTH_MM,
+            attraction_distance_mm: read.attraction * LENGTH_MM,
+            sources_mm: places,
+            ..VeinSpec::default()
+        };
+        Ok(Self { margin, root: DVec2::from(read.root) * LENGTH_MM, veins })
+    }
+}
+
+/// Grows a workload once.
+///
+/// # Errors
+///
+/// [`BenchmarkError`] when it cannot grow.
+pub fn run(workload: &Workload) -> Result<Measure, BenchmarkError> {
+    let growth = GrowthSpec {
+        r#type: GrowthType::None,
+        total_steps: MOST_STEPS,
+        start_step: 0,
+        ..GrowthSpec::default()
+    };
+    let blade = GrowingBlade::new(workload.margin.clone(), &growth)?;
+    measure(&workload.veins, &blade, workload.root, Seed(42))
+}
+
+fn measure(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    root: DVec2,
+    seed: Seed,
+) -> Result<Measure, BenchmarkError> {
+    let mut rng = seed.stream(Stage::AuxinSources);
+    let mut roots = VeinGraph::new();
+    roots.add_root(root);
+    let (wall, processor) = (Instant::now(), ThreadTime::now());
+    let grown = veins::auxin::grow(spec, blade, roots, &mut rng, &mut Silent)?;
+    let (seconds, cpu_seconds) =
+        (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
+    Ok(Measure {
+        sources: grown.sources,
+        nodes: grown.graph.len(),
+        steps: grown.nodes_after_step.len() as u64,
+        seconds,
+        cpu_seconds,
+        unreached: grown.unreached,
+    })
+}
+
+/// The slope of ln `cpu_seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
+#[must_use]
+pub fn exponent(measures: &[Measure]) -> Option<f64> {
+    let points: Vec<(f64, f64)> =
+        measures.iter().map(|m| (libm::log(m.sources as f64), libm::log(m.cpu_seconds))).collect();
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let (mut xy, mut xx) = (0.0, 0.0);
+    for p in &points {
+        xy += (p.0 - x) * (p.1 - y);
+        xx += (p.0 - x) * (p.0 - x);
+    }
+    (xx > 0.0).then(|| xy / xx)
+}
+
+/// One row of Foster's performance tables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FosterRow {
+    /// What the table varies.
+    pub table: &'static str,
+    /// The value in this row.
+    pub value: &'static str,
+    /// Seconds printed in the report; [`FOSTER_GAVE_UP`] where it gives only that limit.
+    pub printed_seconds: f64,
+    growth: GrowthSpec,
+    veins: VeinSpec,
+}
+
+/// Runs longer than this (s) were not waited for in the report.
+pub const FOSTER_GAVE_UP: f64 = 6000.0;
+
+/// Length from the root to the farthest point of the outline in the suite (px; one px is one mm).
+pub const FOSTER_REACH: f64 = 300.0;
+
+/// The rows of the five tables. The base case: 600 darts per step, the three distances 5 px, node
+/// step 1 px, isotropic growth over 600 steps from step 300.
+#[must_use]
+pub fn foster_suite() -> Vec<FosterRow> {
+    let growth = GrowthSpec {
+        total_steps: 600,
+        start_step: 300,
+        horizontal_steps: 600,
+        vertical_steps: 600,
+        ..GrowthSpec::default()
+    };
+    let veins = VeinSpec {
+        spawn_rate: 600.0,
+        source_spawn_distance_mm: 5.0,
+        vein_spawn_distance_mm: 5.0,
+        kill_distance_mm: 5.0,
+        node_step_mm: 1.0,
+        attraction_distance_mm: 0.0,
+        ..VeinSpec::default()
+    };
+    let row = |table, value, printed_seconds, change: &dyn Fn(&mut GrowthSpec, &mut VeinSpec)| {
+        let mut row = FosterRow {
+            table,
+            value,
+            printed_seconds,
+            growth: growth.clone(),
+            veins: veins.clone(),
+        };
+        change(&mut row.growth, &mut row.veins);
+        row
+    };
+    let mut rows = Vec::new();
+    for (value, distance, seconds) in
+        [("1 px", 1.0, 34.0), ("5 px", 5.0, 25.0), ("10 px", 10.0, 11.0), ("100 px", 100.0, 9.0)]
+    {
+        rows.push(row("auxin spawn distance", value, seconds, &|_, veins| {
+            veins.source_spawn_distance_mm = distance;
+        }));
+    }
+    for (value, distance, seconds) in
+        [("1 px", 1.0, 43.0), ("5 px", 5.0, 25.0), ("10 px", 10.0, 18.0), ("100 px", 100.0, 3.0)]
+    {
+        rows.push(row("kill distance", value, seconds, &|_, veins| {
+            veins.kill_distance_mm = distance;
+        }));
+    }
+    for (value, rate, seconds) in
+        [("1000", 1000.0, 212.0), ("600", 600.0, 25.0), ("400", 400.0, 12.0), ("100", 100.0, 8.0)]
+    {
+        rows.push(row("auxin spawn rate", value, seconds, &|_, veins| veins.spawn_rate = rate));
+    }
+    for (value, kind, seconds) in [
+        ("marginal", GrowthType::Marginal, 38.0),
+        ("isotropic", GrowthType::Isotropic, 25.0),
+        ("anisotropic", GrowthType::Anisotropic, 26.0),
+        ("none", GrowthType::None, 32.0),
+    ] {
+        rows.push(row("growth type", value, seconds, &|growth, _| {
+            growth.r#type = kind;
+            // Uneven, so that the row measures what it names.
+            growth.horizontal_steps = 450;
+        }));
+    }
+    for (value, steps, seconds) in [
+        ("600", 600, 25.0),
+        ("1000", 1000, 370.0),
+        ("3000", 3000, FOSTER_GAVE_UP),
+        ("5000", 5000, FOSTER_GAVE_UP),
+    ] {
+        rows.push(row("total steps", value, seconds, &|growth, _| growth.total_steps = steps));
+    }
+    rows
+}
+
+/// Grows one row on a margin, scaled so that its farthest point is [`FOSTER_REACH`] from the base.
+///
+/// # Errors
+///
+/// [`BenchmarkError`] when it cannot grow.
+pub fn run_foster(row: &FosterRow, margin: &Margin) -> Result<Measure, BenchmarkError> {
+    let farthest = margin.outline().iter().map(|p| p.length()).fold(0.0, f64::max);
+    let scale = FOSTER_REACH / farthest;
+    let scaled = |line: &[DVec2]| line.iter().map(|p| *p * scale).collect::<Vec<_>>();
+    let cuts = margin.cuts().iter().map(|line| scaled(line)).collect();
+    let margin = Margin::new(scaled(margin.outline()), margin.apex_index(), cuts, "")?;
+    let blade = GrowingBlade::new(margin, &row.growth)?;
+    let root = blade.root();
+    measure(&row.veins, &blade, root, Seed(42))
+}
+
+/// A beech-like blade: ovate, pointed, 100 mm long.
+#[must_use]
+pub fn beech_like_blade() -> Margin {
+    // Half width over height: sin(π t^0.8) with a drawn-out tip, 0.3 lengths at the widest.
+    let side = |i: usize| {
+        let t = i as f64 / 60.0;
+        let half = libm::sin(std::f64::consts::PI * libm::pow(t, 0.8)) * (1.0 - 0.3 * t * t);
+        DVec2::new(0.3 * half, t) * LENGTH_MM
+    };
+    let mut outline = vec![DVec2::ZERO];
+    outline.extend((1..60).map(side));
+    outline.push(DVec2::new(0.0, LENGTH_MM));
+    outline.extend((1..60).rev().map(side).map(|p| DVec2::new(-p.x, p.y)));
+    Margin::new(outline, 60, Vec::new(), "").expect("a beech leaf is a margin")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_standard_workload_is_used_up_but_for_a_few_beyond_reach() {
+        let measure = run(&standard_workload(1000, Seed(1))).expect("grows");
+        assert_eq!(measure.sources, 1000);
+        assert!((1200..1700).contains(&measure.nodes), "{measure:?}");
+        assert!(measure.unreached.total() < 60, "{measure:?}");
+    }
+
+    #[test]
+    fn the_exponent_of_a_square_law_is_two() {
+        let measure = |n: usize| Measure {
+            sources: n,
+            nodes: n,
+            steps: 1,
+            seconds: 1.0,
+            cpu_seconds: (n * n) as f64,
+            unreached: Unreached::default(),
+        };
+        let found = exponent(&[measure(10), measure(100), measure(1000)]).expect("three sizes");
+        assert!((found - 2.0).abs() < 1e-12);
+        assert_eq!(exponent(&[measure(10)]), None);
+    }
+
+    #[test]
+    fn a_broken_line_of_sources_is_named() {
+        let parameters = r#"{"polygon": [[0,0],[1,0],[1,1],[0,1]], "root": [0,0],
+            "kill": 0.1, "segment": 0.05, "attraction": 1}"#;
+        let error = Workload::parse(parameters, "0.1,0.2\n0.3;0.4\n").expect_err("broken");
+        assert!(!error.to_string().is_empty());
+    }
+}

@@ -77,7 +77,7 @@
 //! margin
 //! raster                                     pixels
 //! geometry                                   mathematics
-//! parameter  units  seed  observer
+//! parameter  point_list  units  seed  observer
 //! ```
 //!
 //! # Spaces and units
@@ -88,6 +88,7 @@
 
 pub mod observer;
 pub mod parameter;
+pub mod point_list;
 pub mod seed;
 pub mod units;
 

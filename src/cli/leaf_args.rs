@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use venation::document::{Document, Value};
 use venation::io::outline::{self, OutlineKind, OutlineOptions};
+use venation::point_list;
 use venation::presets;
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
@@ -100,7 +101,24 @@ pub(crate) fn unknown(name: &str) -> String {
 }
 
 /// Files a person describes a leaf in are small; more than this is a mistake (bytes).
-const LARGEST_TOML: u64 = 64 << 20;
+const LARGEST_TEXT: u64 = 256 << 20;
+
+/// The text of a file.
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let fail = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let size = std::fs::metadata(path).map_err(|e| fail(e.to_string()))?.len();
+    if size > LARGEST_TEXT {
+        return Err(fail(format!("{size} bytes are too many (limit {LARGEST_TEXT})")));
+    }
+    let bytes = std::fs::read(path).map_err(|e| fail(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".into()))
+}
+
+fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
+    let fail = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let points = point_list::parse(&read_text(path)?).map_err(fail)?;
+    if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
+}
 
 fn read_document(leaf: &str) -> Result<Document, Failure> {
     if let Some(preset) = presets::find(leaf) {
@@ -110,15 +128,7 @@ fn read_document(leaf: &str) -> Result<Document, Failure> {
     if !path.exists() && path.extension().is_none() {
         return Err(Failure::Input(unknown(leaf)));
     }
-    let fail = |problem: String| Failure::Input(format!("{leaf}: {problem}"));
-    let size = std::fs::metadata(path).map_err(|e| fail(e.to_string()))?.len();
-    if size > LARGEST_TOML {
-        return Err(fail(format!(
-            "{size} bytes are too many for a TOML file (limit {LARGEST_TOML})"
-        )));
-    }
-    let bytes = std::fs::read(path).map_err(|e| fail(e.to_string()))?;
-    let text = String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".into()))?;
+    let text = read_text(path)?;
     Ok(Document::parse(&text, leaf)?)
 }
 
@@ -139,7 +149,7 @@ impl LeafArgs {
             self.import_outline(path, &mut document, context)?;
         }
         if let Some(path) = &self.sources {
-            let points = outline::read_points(path).map_err(|e| Failure::Input(e.to_string()))?;
+            let points = read_sources(path)?;
             document.insert("veins.sources_mm", Value::Points(points), "--sources");
         }
         for assignment in &self.set {

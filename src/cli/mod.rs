@@ -6,14 +6,17 @@
 mod bench;
 mod compare;
 mod generate;
+mod inspect;
 mod leaf_args;
 mod presets;
 mod progress;
 mod seeds;
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
+use venation::io::write::{Overwrite, write_files};
 
 /// Why a command stopped.
 #[derive(Debug)]
@@ -65,6 +68,12 @@ impl From<venation::error::Error> for Failure {
     }
 }
 
+impl From<bench::Error> for Failure {
+    fn from(error: bench::Error) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
 impl From<venation::document::DocumentError> for Failure {
     fn from(error: venation::document::DocumentError) -> Self {
         Self::Input(error.to_string())
@@ -101,6 +110,7 @@ Examples:
   venation generate beech --outline scan.jpg -o out     grown in the outline of a scanned leaf
   venation generate linden --seeds 1-50 -o lindens      fifty different leaves
   venation compare beech -o growth.png                  growth types side by side
+  venation inspect out                                  its veins measured beside real leaves
   venation bench --auxins 1000,2000,4000,8000           time against the number of sources
   venation presets show beech > my.toml                 every setting, to edit and generate from
 
@@ -121,8 +131,10 @@ struct Cli {
 enum Command {
     /// Make leaves: textures, a card, outlines and graphs.
     Generate(Box<generate::Args>),
-    /// Growth types side by side, as one labelled picture.
+    /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
+    /// Measure a vein pattern, grown or real, beside real leaves.
+    Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
     Bench(bench::Args),
     /// List the leaves that come with venation, or show one as complete TOML.
@@ -139,9 +151,7 @@ pub(crate) fn run() -> Result<(), Failure> {
                 write!(std::io::stdout(), "{error}")?;
                 return Ok(());
             }
-            let text = error.to_string();
-            let text = text.trim_start_matches("error: ").trim_end();
-            return Err(Failure::Input(text.to_owned()));
+            return Err(Failure::Input(one_line(&error.to_string())));
         }
     };
     let mut stdout = std::io::stdout().lock();
@@ -149,7 +159,38 @@ pub(crate) fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
-        Command::Bench(args) => bench::run(args, &mut context),
+        Command::Inspect(args) => inspect::run(args, &mut context),
+        Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),
     }
+}
+
+/// Refuses when a file that would be written is there already, unless forced.
+fn refuse_existing<'a>(
+    paths: impl IntoIterator<Item = &'a PathBuf>,
+    force: bool,
+) -> Result<(), Failure> {
+    match paths.into_iter().find(|path| !force && path.exists()) {
+        Some(path) => {
+            let problem = format!("{}: exists already; --force overwrites", path.display());
+            Err(Failure::Exists(problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Writes one file, whole or not at all.
+fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    write_files(folder, &[(name, bytes)], Overwrite::Force)
+        .map_err(|error| Failure::Input(error.to_string()))
+}
+
+/// clap's message in one line: what is wrong and its tip, without usage.
+fn one_line(message: &str) -> String {
+    let said = message.split("\nUsage:").next().unwrap_or(message);
+    let said = said.split("\nFor more information").next().unwrap_or(said);
+    let lines: Vec<&str> = said.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    lines.join("; ").trim_start_matches("error: ").replace(":; ", ": ")
 }

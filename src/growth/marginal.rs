@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use super::overlap;
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::{Margin, MarginError};
@@ -27,6 +28,7 @@ struct Sector {
 #[derive(Debug, Clone)]
 pub(super) struct Sweep {
     sectors: Vec<Sector>,
+    hull: Vec<DVec2>,
     index: SegmentIndex,
     plain: bool,
 }
@@ -53,7 +55,7 @@ impl Sweep {
         let index = SegmentIndex::of_polygon(&hull);
         let area = polygon::signed_area(outline);
         let plain = (polygon::signed_area(&hull) - area).abs() <= 1e-9 * area;
-        Self { sectors, index, plain }
+        Self { sectors, hull, index, plain }
     }
 
     /// Whether the hull is the outline itself.
@@ -80,17 +82,24 @@ impl Sweep {
     /// The blade at scale `s`: the part of `mature` inside the scaled hull that hangs together with
     /// the base.
     pub(super) fn margin(&self, mature: &Margin, s: f64) -> Result<Margin, MarginError> {
-        let inside = |p: DVec2| self.scale_reaching(p) <= s;
-        let cuts = mature.cuts().iter().flat_map(|line| runs_inside(line, inside)).collect();
         let hint = "use another growth.type, or growth.scale = 1";
-        if self.plain {
-            let outline = mature.outline().iter().map(|p| *p * s).collect();
-            return Margin::new(outline, mature.apex_index(), cuts, hint);
-        }
-        // Whatever the hull has not reached yet is drawn back to it along its ray.
-        let drawn_back = |p: &DVec2| *p * (s / self.scale_reaching(*p)).min(1.0);
-        let outline = mature.outline().iter().map(drawn_back).collect();
-        Margin::new(outline, mature.apex_index(), cuts, hint)
+        let (outline, apex) = if self.plain {
+            (mature.outline().iter().map(|p| *p * s).collect(), mature.apex_index())
+        } else {
+            let young: Vec<DVec2> = self.hull.iter().map(|p| *p * s).collect();
+            // Start on the one that lies in the other: the hull where they leave the base together.
+            let outline = if angle(young[1]) >= angle(mature.outline()[1]) - 1e-6 {
+                overlap::common_part(&young, mature.outline())
+            } else {
+                overlap::common_part(mature.outline(), &young)
+            };
+            overlap::with_apex(&outline)
+        };
+        let bare = Margin::new(outline, apex, Vec::new(), hint)?;
+        // Cuts do not move: what the margin has not passed yet is missing.
+        let inside = |p: DVec2| polygon::contains(bare.outline(), p);
+        let cuts = mature.cuts().iter().flat_map(|line| runs_inside(line, inside)).collect();
+        Margin::new(bare.outline().to_vec(), bare.apex_index(), cuts, hint)
     }
 }
 
@@ -111,23 +120,39 @@ fn crossing(ray: DVec2, a: DVec2, b: DVec2) -> Option<f64> {
     ((ray.perp_dot(a) > 0.0) != (ray.perp_dot(b) > 0.0)).then(|| on_line(ray, a, b)).flatten()
 }
 
-/// The outline of the star hull, anticlockwise.
+/// By how much (radians) the hull stays back where it jumps: its side would pass exactly through the
+/// vertex that it jumps at, and touching is not crossing. Far above rounding, far below
+/// [`Margin::MIN_EDGE_MM`] in any leaf.
+const BACK: f64 = 1e-8;
+
+/// The outline of the star hull, anticlockwise from the base.
 fn hull(sectors: &[Sector]) -> Vec<DVec2> {
-    let mut hull: Vec<DVec2> = Vec::with_capacity(2 * sectors.len());
-    let mut push = |p: DVec2| {
-        if hull.last().is_none_or(|last| last.distance_squared(p) > 0.0) {
-            hull.push(p);
-        }
+    let n = sectors.len();
+    // Begin behind the sector without tissue below the base.
+    let empty = sectors.iter().position(|sector| sector.edge.is_none()).unwrap_or(0);
+    let mut hull: Vec<DVec2> = vec![DVec2::ZERO];
+    let reach = |sector: &Sector, angle: f64| {
+        let (a, b) = sector.edge?;
+        let ray = DVec2::new(libm::cos(angle), libm::sin(angle));
+        on_line(ray, a, b).map(|reach| (ray, reach))
     };
-    for (i, sector) in sectors.iter().enumerate() {
-        let Some((a, b)) = sector.edge else {
-            push(DVec2::ZERO);
-            continue;
+    for k in 1..=n {
+        let i = (empty + k) % n;
+        let (sector, after, before) =
+            (&sectors[i], &sectors[(i + 1) % n], &sectors[(i + n - 1) % n]);
+        let jumps = |at: f64, other: &Sector| {
+            let (own, other) = (reach(sector, at), reach(other, at));
+            own.is_some_and(|own| other.is_some_and(|other| own.1 > other.1 * (1.0 + 1e-9)))
         };
-        let to = sectors[(i + 1) % sectors.len()].from;
-        for angle in [sector.from, to] {
-            let ray = DVec2::new(libm::cos(angle), libm::sin(angle));
-            push(on_line(ray, a, b).map_or(a, |reach| ray * reach));
+        let from = sector.from + if jumps(sector.from, before) { BACK } else { 0.0 };
+        let to = after.from - if jumps(after.from, after) { BACK } else { 0.0 };
+        for angle in [from, to] {
+            let Some((ray, reach)) = reach(sector, angle) else { continue };
+            let p = ray * reach;
+            // Sectors that meet repeat their common point, up to rounding.
+            if hull.last().is_none_or(|last| last.distance(p) > 1e-9 * reach) {
+                hull.push(p);
+            }
         }
     }
     hull

@@ -20,6 +20,8 @@ pub enum Found {
     Given,
     /// A thin stalk, cut off here.
     Stalk,
+    /// The rest of a petiole too short to cut off.
+    Nub,
     /// A notch in the base.
     Notch,
     /// The end of the blade that looks most like a base.
@@ -334,7 +336,7 @@ mod tests {
             assert!(placed.base_was.length() < 3.0, "{root}: {}", placed.base_was);
         }
         let top = place(&outline, &[], Some(DVec2::new(0.0, 101.0)), 80.0).expect("a leaf");
-        assert!(top.base_was.distance(DVec2::new(0.0, 100.0)) < 1.5);
+        assert!(top.base_was.distance(DVec2::new(0.0, 100.0)) < 1.5, "{top:?}");
         let error = place(&outline, &[], Some(DVec2::new(60.0, 50.0)), 80.0).expect_err("far off");
         assert!(
             error.to_string().starts_with("the root (60, 50) lies outside the leaf"),

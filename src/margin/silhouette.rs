@@ -220,7 +220,7 @@ fn background(pixels: &Grid<[u8; 4]>) -> Plane {
             })
             .collect();
         // On too little of the border a slope would be a guess.
-        if near.len() * 4 < samples.len() {
+        if near.len() * 8 < samples.len() {
             break;
         }
         let count = near.len() as f32;

@@ -66,40 +66,47 @@ pub fn leak(open: &Grid<bool>, start: (usize, usize)) -> Option<Gap> {
     let (width, height) = (open.width(), open.height());
     let clearance = chamfer::distance_to(width, height, |i| !open.values()[i]);
     let room = |i: usize| clearance.values()[i].min(chamfer::NEVER);
-    // Away from the wall first: a start beside it is not the gap.
-    let mut start = start.1 * width + start.0;
-    while let Some(roomier) = neighbours(start, width, height).max_by_key(|&i| room(i))
-        && room(roomier) > room(start)
-    {
-        start = roomier;
-    }
-    // Dijkstra for the way whose narrowest place is widest.
+    // Always on through the roomiest pixel at hand (Prim): every way found is the widest there is.
+    let start = start.1 * width + start.0;
     let mut came_from = vec![usize::MAX; width * height];
     let mut heap = BinaryHeap::from([(room(start), start, start)]);
-    while let Some((narrowest, i, from)) = heap.pop() {
+    while let Some((_, i, from)) = heap.pop() {
         if came_from[i] != usize::MAX {
             continue;
         }
         came_from[i] = from;
         if on_border(i, width, height) {
-            let mut at = i;
-            let mut tightest = i;
-            while at != start {
-                at = came_from[at];
-                if room(at) < room(tightest) {
-                    tightest = at;
-                }
-            }
-            let wide = f64::from(room(tightest)) * 2.0 / f64::from(chamfer::PIXEL) - 1.0;
-            return Some(Gap { x: tightest % width, y: tightest / width, width: wide });
+            return Some(narrowest(i, start, &came_from, &clearance));
         }
         for next in neighbours(i, width, height) {
             if open.values()[next] && came_from[next] == usize::MAX {
-                heap.push((narrowest.min(room(next)), next, i));
+                heap.push((room(next), next, i));
             }
         }
     }
     None
+}
+
+/// The narrowest place of the way to `end`, against the room that there was before it: a start close
+/// to the wall is no gap.
+fn narrowest(end: usize, start: usize, came_from: &[usize], clearance: &Grid<u32>) -> Gap {
+    let mut way = vec![end];
+    while way[way.len() - 1] != start {
+        way.push(came_from[way[way.len() - 1]]);
+    }
+    let mut roomiest = 1;
+    let mut best = (f64::INFINITY, end);
+    for &i in way.iter().rev() {
+        let room = clearance.values()[i];
+        roomiest = roomiest.max(room);
+        let share = f64::from(room) / f64::from(roomiest);
+        if share < best.0 {
+            best = (share, i);
+        }
+    }
+    let room = f64::from(clearance.values()[best.1]) / f64::from(chamfer::PIXEL);
+    let (x, y) = (best.1 % clearance.width(), best.1 / clearance.width());
+    Gap { x, y, width: 2.0 * room - 1.0 }
 }
 
 #[cfg(test)]

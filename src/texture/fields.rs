@@ -2,7 +2,7 @@
 //!
 //! Veins are drawn at full resolution, band by band, from tapered capsules, each within its own
 //! box. What varies slowly (distance to the margin, to the larger veins, the reach of the colour
-//! schemes, broad mottling) is computed on a coarser [`Guide`] and read in between.
+//! schemes, broad mottling) is computed on a coarser guide ([`super::guide`]) and read in between.
 
 use std::ops::Range;
 
@@ -12,7 +12,11 @@ use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
-pub(super) use super::guide::{Guide, Place};
+pub(super) use super::guide::Place;
+
+/// Half the window through which a texel sees a vein (px). At 0.5 a slanted vein finer than a
+/// texel falls into dashes; at 1 everything is soft.
+const LEAST_HALF_PX: f32 = 0.7;
 
 /// A groove reaches this many radii from the axis of its vein.
 const GROOVE_RADII: f32 = 2.6;
@@ -48,12 +52,14 @@ pub(super) struct VeinAt {
 }
 
 impl Strokes {
-    pub(super) fn new(venation: &Venation, frame: &TextureFrame, size: usize) -> Self {
+    /// The veins of a leaf whose midrib starts with the radius `neck` (mm).
+    pub(super) fn new(venation: &Venation, neck: f64, frame: &TextureFrame, size: usize) -> Self {
         let pixels_per_mm = frame.pixels_per_mm(size);
         let at = |node: u32| {
             frame.pixel_from_leaf(venation.graph().positions()[node as usize], size).as_vec2()
         };
-        let radius = |node: u32| venation.radii()[node as usize] * pixels_per_mm;
+        let radii = necked(venation, neck);
+        let radius = |node: u32| radii[node as usize] * pixels_per_mm;
         let mut ends: Vec<bool> =
             venation.graph().child_counts().iter().map(|&count| count == 0).collect();
         for &(a, b) in venation.graph().joins() {
@@ -77,7 +83,7 @@ impl Strokes {
         let mut texels = vec![VeinAt::default(); width * rows.len()];
         let mm = 1.0 / self.pixels_per_mm;
         for capsule in &self.capsules {
-            let reach = (GROOVE_RADII * capsule.widest()).max(capsule.widest() + 1.0);
+            let reach = (GROOVE_RADII * capsule.widest()).max(capsule.widest() + LEAST_HALF_PX);
             let [columns, lines] = capsule.pixels(reach, width, rows.clone());
             for y in lines {
                 let row = &mut texels[(y - rows.start) * width..][..width];
@@ -90,6 +96,43 @@ impl Strokes {
         texels
     }
 }
+
+/// The nodes of the midrib, from the petiole: at each fork the widest child. Of several roots the
+/// first.
+pub(super) fn midrib(venation: &Venation) -> Vec<u32> {
+    let graph = venation.graph();
+    let radius = |node: u32| venation.radii()[node as usize];
+    let mut widest: Vec<Option<u32>> = vec![None; graph.len()];
+    for (parent, child) in graph.edges() {
+        let slot = &mut widest[parent as usize];
+        if slot.is_none_or(|other| radius(child) > radius(other)) {
+            *slot = Some(child);
+        }
+    }
+    let root = (!graph.is_empty()).then_some(0);
+    std::iter::successors(root, |&node| widest[node as usize]).collect()
+}
+
+/// The radii of all nodes, widened along the midrib towards the petiole.
+fn necked(venation: &Venation, neck: f64) -> Vec<f64> {
+    let mut radii = venation.radii().to_vec();
+    let at = |node: u32| venation.graph().positions()[node as usize];
+    let reach = NECK_RADII * neck;
+    let (mut walked, mut last) = (0.0, None);
+    for node in midrib(venation) {
+        walked += last.map_or(0.0, |last| at(last).distance(at(node)));
+        if walked >= reach {
+            break;
+        }
+        let own = &mut radii[node as usize];
+        *own += (neck - *own).max(0.0) * (1.0 - walked / reach).powi(2);
+        last = Some(node);
+    }
+    radii
+}
+
+/// The midrib widens towards the petiole over so many of the radii that they meet with.
+const NECK_RADII: f64 = 30.0;
 
 /// A branch widens towards its parent up to so many times its own radius: a fillet. The parent's
 /// full radius would make a thorn of every fine branch on the midrib.
@@ -105,7 +148,7 @@ impl VeinAt {
         if wide > 0.0 {
             self.groove = self.groove.max(wide * wide * radius * mm);
         }
-        let half = (SOFT_EDGE * radius).max(0.5);
+        let half = (SOFT_EDGE * radius).max(LEAST_HALF_PX);
         let outside = radius + half;
         if distance2 >= outside * outside {
             return;

@@ -98,9 +98,9 @@ pub(super) struct Tissue {
     /// The veins.
     pub vein: VeinAt,
     /// How much of the texel the lines of the fine nets cover, as far as they show (0–1).
-    pub lines: [f32; 2],
-    /// Lightness of the areoles of the two nets, as far as they show (−1 – 1).
-    pub tones: [f32; 2],
+    pub lines: [f32; 3],
+    /// Lightness of the meshes of the nets, as far as they show (−1 – 1).
+    pub tones: [f32; 3],
     /// Grain, −1 – 1.
     pub grain: f32,
     /// Distance from the base of the blade (mm).
@@ -113,13 +113,13 @@ struct Face {
     /// A vein of this radius (mm) shows half its colour: finer ones are buried in green tissue.
     half_shown_mm: f32,
     /// How much of the vein's colour the fine nets show.
-    lines: [f32; 2],
+    lines: [f32; 3],
     /// Darkening of the tissue that lines a vein.
     flank: f32,
 }
 
-const FRONT: Face = Face { half_shown_mm: 0.075, lines: [0.30, 0.20], flank: 0.20 };
-const BACK: Face = Face { half_shown_mm: 0.030, lines: [0.42, 0.26], flank: 0.12 };
+const FRONT: Face = Face { half_shown_mm: 0.075, lines: [0.42, 0.30, 0.20], flank: 0.20 };
+const BACK: Face = Face { half_shown_mm: 0.030, lines: [0.55, 0.42, 0.26], flank: 0.12 };
 
 /// The colours of one side, ready to mix.
 #[derive(Debug)]
@@ -213,10 +213,10 @@ impl Pigments {
             + 0.06 * tones[1]
             + 0.10 * grain;
         tint.value *= 1.0 + m * light;
-        // The fine net, thinner beside grown veins, which take its place there.
-        let away = smooth(0.05, 0.35, place.vein);
-        let net = (self.face.lines[0] * lines[0] * away * (1.0 + 0.7 * fine))
-            .max(self.face.lines[1] * lines[1]);
+        // The fine nets, here stronger, there weaker.
+        let [third, fourth, fifth] = self.face.lines;
+        let coarse = (third * lines[0]).max(fourth * lines[1]) * (1.0 + 0.7 * fine);
+        let net = coarse.max(fifth * lines[2]);
         tint = tint.towards(self.vein, net * m.sqrt());
         // A thin hardened rim.
         let rim = 1.0 - smooth(0.05, 0.45, place.edge);
@@ -239,7 +239,7 @@ impl Pigments {
     pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Tint {
         let round = stalk.dome / stalk.radius.max(1e-6);
         let blade = 1.0 - smooth(0.0, 2.0 * self.petiole_reach, stalk.along);
-        let stem = smooth(0.80, 1.0, stalk.along / length.max(1e-6));
+        let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));
         let mut tint = self.petiole.towards(self.vein, 0.5 * blade);
         tint.hue -= 18.0 * stem;
         tint.value *=

@@ -1,6 +1,6 @@
 //! The fine structure between the grown veins: a net of the finest veins around areoles, and grain.
 //!
-//! The net is the border of a jittered Voronoi diagram in two sizes (S. Worley, "A cellular texture
+//! The net is the border of a jittered Voronoi diagram in three sizes (S. Worley, "A cellular texture
 //! basis function", SIGGRAPH 1996). Departs from it: the distance to the border is that to the
 //! bisector of the two nearest points, not F₂ − F₁, so that lines keep their width.
 //!
@@ -9,11 +9,18 @@
 
 use crate::geometry::noise;
 
-/// Sizes of areoles (mm): meshes of the fourth, and of the fifth order of veins.
-pub(super) const AREOLE_MM: [f32; 2] = [0.85, 0.27];
+/// Sizes of the meshes (mm): of third-order veins where none have grown, of the fourth order, and
+/// of the fifth.
+pub(super) const MESH_MM: [f32; 3] = [2.1, 0.85, 0.27];
 
-/// Half the width of the lines of either net (mm).
-pub(super) const LINE_MM: [f32; 2] = [0.035, 0.014];
+/// Which mesh is the areole: the one that bulges.
+pub(super) const AREOLE: usize = 1;
+
+/// Half the width of the lines of each net (mm).
+pub(super) const LINE_MM: [f32; 3] = [0.042, 0.032, 0.014];
+
+/// The nets begin within these distances (mm) of a grown vein: nearer, it takes their place.
+pub(super) const AWAY_MM: [[f32; 2]; 3] = [[0.5, 1.3], [0.05, 0.35], [0.0, 0.1]];
 
 /// Size of the grain (mm): a few cells of the epidermis.
 const GRAIN_MM: f32 = 0.11;
@@ -72,23 +79,23 @@ impl Net {
             self.gather(cell);
         }
         let (x, y) = (x - cell.0 as f32, y - cell.1 as f32);
-        let (mut first, mut second) = ((f32::MAX, 0), (f32::MAX, 0));
+        // The two nearest points without a branch, which would be mispredicted at every other
+        // point: positive floats sort as their bits do, and the last four bits carry the index.
+        let (mut first, mut second) = (u32::MAX, u32::MAX);
         for (k, point) in self.points.iter().enumerate() {
             let (dx, dy) = (point[0] - x, point[1] - y);
-            let distance2 = dx * dx + dy * dy;
-            if distance2 < first.0 {
-                second = first;
-                first = (distance2, k);
-            } else if distance2 < second.0 {
-                second = (distance2, k);
-            }
+            let key = ((dx * dx + dy * dy).to_bits() & !15) | k as u32;
+            second = second.min(first.max(key));
+            first = first.min(key);
         }
-        let (p, q) = (self.points[first.1], self.points[second.1]);
+        let (nearest, next) = ((first & 15) as usize, (second & 15) as usize);
+        let (p, q) = (self.points[nearest], self.points[next]);
+        let squared = |point: [f32; 2]| (point[0] - x).powi(2) + (point[1] - y).powi(2);
         let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
         let apart = (dx * dx + dy * dy).sqrt().max(1e-3);
         Mesh {
-            border: (second.0 - first.0) / (2.0 * apart) * self.size,
-            tone: noise::unit(noise::lattice(self.hashes[first.1] as i32, 0, 7)),
+            border: ((squared(q) - squared(p)) / (2.0 * apart)).max(0.0) * self.size,
+            tone: noise::unit(noise::lattice(self.hashes[nearest] as i32, 0, 7)),
         }
     }
 }
@@ -107,4 +114,26 @@ pub(super) fn grain(x: f32, y: f32, size: f32, seed: u32) -> f32 {
 /// Size of the grain on a texture (mm): its own, but never finer than the texels can carry.
 pub(super) fn grain_size(pixels_per_mm: f32) -> f32 {
     GRAIN_MM.max(1.7 / pixels_per_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_net_is_the_same_however_one_comes_to_a_place() {
+        let mut walked = Net::new(0.85, 5);
+        for i in 0..500 {
+            let (x, y) = (i as f32 * 0.13 - 20.0, i as f32 * 0.07 - 9.0);
+            let (here, fresh) = (walked.at(x, y), Net::new(0.85, 5).at(x, y));
+            assert_eq!((here.border, here.tone), (fresh.border, fresh.tone));
+            assert!(here.border >= 0.0 && here.border < 0.85 && (0.0..1.0).contains(&here.tone));
+        }
+    }
+
+    #[test]
+    fn structures_finer_than_the_texels_fade() {
+        assert_eq!(shown(0.27, 4.0), 0.0);
+        assert_eq!(shown(0.85, 12.0), 1.0);
+    }
 }

@@ -8,6 +8,7 @@ pub mod graph;
 pub mod guides;
 pub mod metrics;
 pub mod orders;
+pub mod particles;
 pub mod smooth;
 pub mod widths;
 
@@ -21,12 +22,15 @@ use crate::parameter::{Kind, Parameters, parameters, words};
 use crate::seed::{Seed, Stage};
 pub use graph::{NodeId, Rank, VeinGraph, VeinKind};
 use guides::GuideSpec;
+use particles::ParticleSpec;
 
 words! {
     /// How veins are made.
     pub enum Algorithm {
         /// Veins grow towards auxin sources and never meet (Runions et al. 2005, open venation).
         AuxinOpen = "auxin-open",
+        /// Veins are the trails of particles that flow to the petiole (Rodkaew et al. 2002).
+        Particles = "particles",
     }
 }
 
@@ -57,6 +61,28 @@ parameters! {
         smoothing: number(0.0, 0.0..=1.0, ""),
         /// Veins that are laid before auxin takes over.
         guides: group(GuideSpec, GuideSpec::default()),
+        /// Particles, for `algorithm = "particles"`.
+        particles: group(ParticleSpec, ParticleSpec::default()),
+    }
+}
+
+impl std::fmt::Display for Unreached {
+    /// The count, and the reasons in words.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.total())?;
+        let reasons = [
+            (self.outside, "outside the blade"),
+            (self.too_young, "where the margin has not come yet"),
+            (self.out_of_reach, "beyond the attraction distance of every vein"),
+            (self.hidden, "hidden behind the margin or a cut"),
+            (self.unfinished, "not reached when growth ended"),
+        ];
+        let mut separator = ": ";
+        for (count, reason) in reasons.into_iter().filter(|&(count, _)| count > 0) {
+            write!(f, "{separator}{count} {reason}")?;
+            separator = ", ";
+        }
+        Ok(())
     }
 }
 
@@ -233,6 +259,7 @@ pub fn grow_from(
         Algorithm::AuxinOpen => {
             auxin::grow(spec, blade, start, &mut seed.stream(Stage::AuxinSources), observer)?
         }
+        Algorithm::Particles => return flow(spec, blade, roots, seed, observer),
     };
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
     let smooth::Smoothed { graph, nodes_after_step } =
@@ -249,8 +276,28 @@ pub fn grow_from(
     })
 }
 
+/// Veins as the trails of particles in the finished blade.
+fn flow(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    roots: &[DVec2],
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Venation, VeinError> {
+    let roots: Vec<DVec2> = roots.iter().map(|&p| blade.finished_from_mature(p)).collect();
+    let mut rng = seed.stream(Stage::Particles);
+    let flowed = particles::grow(&spec.particles, blade.finished(), &roots, &mut rng, observer)?;
+    // Every tip is one particle: Murray's law on tips is his law on energy.
+    let tip =
+        widths::radius(spec.tip_radius_mm, spec.particles.initial_energy, spec.murray_exponent);
+    let radii = widths::murray(&flowed.graph, tip, spec.murray_exponent);
+    let orders = orders::by_width(&flowed.graph, &radii);
+    Ok(Venation { sources: flowed.particles, ..Venation::new(flowed.graph, radii, orders) })
+}
+
 /// Refuses settings under which growth would make no sense or never end.
 fn check(spec: &VeinSpec) -> Result<(), VeinError> {
+    particles::check(&spec.particles)?;
     let defaults = VeinSpec::parameters();
     let value = |key: &str| match key {
         "spawn_rate" => spec.spawn_rate,
@@ -265,7 +312,8 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
     };
     for parameter in &defaults {
         let Kind::Number { min, max, .. } = parameter.kind else { continue };
-        if parameter.key.starts_with("guides.") {
+        if parameter.key.contains('.') {
+            // Groups check their own.
             continue;
         }
         let value = value(&parameter.key);

@@ -11,9 +11,9 @@ use super::graph::{NodeId, VeinGraph};
 /// Finer veins are not told apart: manuals rank up to the seventh order.
 pub const HIGHEST_ORDER: u8 = 7;
 
-/// Children whose radii are within this share of the widest count as equally wide: with Murray's
-/// law the radius says no more than this about which of two branches is the main one.
-const NEARLY: f64 = 0.02;
+/// Children whose radii are within this share of the widest count as equally wide: under Murray's law
+/// a tenth of the radius is a third of the tips, and near the apex a tip more or less is chance.
+const NEARLY: f64 = 0.1;
 
 /// The order of the vein at each node: 1 primary, 2 secondary, …, at most [`HIGHEST_ORDER`].
 #[must_use]
@@ -85,6 +85,8 @@ mod tests {
         for i in 1..=6 {
             midrib.push(graph.sprout(midrib[i - 1], DVec2::new(0.0, i as f64)));
         }
+        graph.sprout(midrib[5], DVec2::new(-1.0, 5.5));
+        graph.sprout(midrib[5], DVec2::new(1.0, 5.5));
         let branch = graph.sprout(midrib[3], DVec2::new(1.0, 3.5));
         let twig = graph.sprout(branch, DVec2::new(2.0, 4.0));
         let fork = graph.sprout(branch, DVec2::new(1.2, 4.5));

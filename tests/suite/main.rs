@@ -2,8 +2,12 @@
 
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod files; // what is written, read back by independent readers
+mod golden; // expected pictures, which are also the README's
+mod imports; // outlines from files, odd and broken ones too
 mod layers; // who may use whom
 mod presets; // every leaf that comes with venation
+mod reference; // open venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
 mod support;
 mod textures; // what painting promises
+mod veins; // growth against an obvious reference, node by node

@@ -1,11 +1,14 @@
 //! The vein pattern: the fast path against an obvious one, and what every pattern guarantees.
 
 use glam::DVec2;
+use proptest::prelude::*;
 use venation::growth::{GrowingBlade, GrowthSpec, GrowthType};
 use venation::margin::Margin;
-use venation::observer::Silent;
-use venation::seed::Seed;
-use venation::veins::{self, VeinSpec};
+use venation::observer::{Progress, Silent};
+use venation::seed::{Rng, Seed, Stage};
+use venation::veins::{self, VeinSpec, Venation, auxin};
+
+use super::reference::{self, Frame};
 
 /// An ellipse 100 mm long and 50 wide.
 fn ellipse() -> Margin {
@@ -18,7 +21,7 @@ fn ellipse() -> Margin {
     Margin::new(outline, 32, Vec::new(), "").expect("an ellipse is a margin")
 }
 
-/// Lobes below the base, a waist and two sinuses: nearly nothing sees everything.
+/// Lobes below the base, two deep sinuses and a cut: nearly nothing sees everything.
 fn lobed() -> Margin {
     let right = [
         (6.0, -9.0),
@@ -42,37 +45,170 @@ fn lobed() -> Margin {
     Margin::new(outline, 13, vec![cut], "").expect("a lobed margin")
 }
 
-#[test]
-fn every_growth_type_fills_the_blade_with_a_tree() {
+/// A small random case of one kind.
+fn case(
+    kind: GrowthType,
+    concave: bool,
+    reach: bool,
+    given: bool,
+    rng: &mut Rng,
+) -> (GrowingBlade, VeinSpec) {
+    let steps = 25 + rng.bits() % 50;
+    let growth = GrowthSpec {
+        r#type: kind,
+        total_steps: steps,
+        horizontal_steps: 10 + rng.bits() % 60,
+        vertical_steps: steps,
+        start_step: rng.bits() % 20,
+        scale: if rng.unit() < 0.3 { rng.between(0.6, 1.0) } else { 1.0 },
+    };
+    let margin = if concave { lobed() } else { ellipse() };
+    let mut spec = VeinSpec {
+        // Now and then more than fit into the lists that are searched one by one.
+        spawn_rate: if rng.unit() < 0.2 { 60.0 } else { rng.between(0.5, 8.0) },
+        source_spawn_distance_mm: rng.between(0.0, 8.0),
+        vein_spawn_distance_mm: rng.between(0.0, 8.0),
+        node_step_mm: rng.between(1.0, 4.0),
+        attraction_distance_mm: if reach { rng.between(6.0, 30.0) } else { 0.0 },
+        ..VeinSpec::default()
+    };
+    spec.kill_distance_mm = spec.node_step_mm * rng.between(0.5, 4.0);
+    if given {
+        let bounds = margin.bounds();
+        spec.sources_mm = (0..90)
+            .map(|_| {
+                let x = rng.between(bounds.min.x, bounds.max.x);
+                [x, rng.between(bounds.min.y, bounds.max.y)]
+            })
+            .collect();
+    }
+    (GrowingBlade::new(margin, &growth).expect("a blade"), spec)
+}
+
+/// All kinds of cases, `each` of each.
+fn for_all_cases(each: u64, mut test: impl FnMut(&str, &GrowingBlade, &VeinSpec, u64)) {
     for &kind in GrowthType::ALL {
-        for margin in [ellipse(), lobed()] {
-            let growth = GrowthSpec {
-                r#type: kind,
-                total_steps: 200,
-                horizontal_steps: 150,
-                vertical_steps: 200,
-                start_step: 60,
-                ..GrowthSpec::default()
-            };
-            let blade = GrowingBlade::new(margin, &growth).expect("grows");
-            let spec = VeinSpec {
-                node_step_mm: 1.0,
-                source_spawn_distance_mm: 3.0,
-                kill_distance_mm: 2.0,
-                ..VeinSpec::default()
-            };
-            let start = std::time::Instant::now();
-            let venation = veins::grow(&spec, &blade, Seed(1), &mut Silent).expect("veins");
-            eprintln!(
-                "{kind} {} nodes {:?} orders {:?} of {} {:?}",
-                venation.graph().len(),
-                venation.unreached(),
-                venation.orders().iter().max(),
-                venation.sources(),
-                start.elapsed()
-            );
-            assert_eq!(venation.check(blade.finished()), None, "{kind}");
-            assert!(venation.graph().len() > 100, "{kind}");
+        for bits in 0..8 {
+            let (concave, reach, given) = (bits & 1 > 0, bits & 2 > 0, bits & 4 > 0);
+            for seed in 0..each {
+                let mut rng = Seed(seed * 8 + bits).stream(Stage::Tissue);
+                let (blade, spec) = case(kind, concave, reach, given, &mut rng);
+                let name = format!("{kind} concave={concave} reach={reach} given={given} {seed}");
+                test(&name, &blade, &spec, seed);
+            }
         }
     }
+}
+
+#[test]
+fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
+    let mut nodes = 0;
+    for_all_cases(8, |name, blade, spec, seed| {
+        let (root, darts) = (blade.root(), || Seed(seed).stream(Stage::AuxinSources));
+        let slow = reference::grow(spec, blade, root, &mut darts(), Frame::Mature, usize::MAX);
+        let fast = auxin::grow(spec, blade, &[root], &mut darts(), &mut Silent).expect(name);
+        assert_eq!(fast.graph.len(), slow.positions.len(), "{name}");
+        for (id, &p) in fast.graph.positions().iter().enumerate() {
+            let parent = fast.graph.parent(id as u32).map(|parent| parent as usize);
+            assert_eq!(parent, slow.parents[id], "{name}: node {id}");
+            assert!(p.distance(slow.positions[id]) <= 1e-9 * 100.0, "{name}: node {id}");
+        }
+        let left = fast.unreached;
+        assert_eq!(left.out_of_reach + left.hidden + left.unfinished, slow.alive, "{name}");
+        nodes += fast.graph.len();
+    });
+    assert!(nodes > 15_000, "the cases have become too easy: {nodes} nodes");
+}
+
+#[test]
+fn distances_that_shrink_agree_with_a_leaf_that_grows() {
+    // Rounding differs, and growth is chaotic: over a few steps it must not show.
+    for_all_cases(2, |name, blade, spec, seed| {
+        let (root, darts) = (blade.root(), || Seed(seed).stream(Stage::AuxinSources));
+        let grow = |frame| reference::grow(spec, blade, root, &mut darts(), frame, 20);
+        let (mature, literal) = (grow(Frame::Mature), grow(Frame::Literal));
+        assert_eq!(mature.parents, literal.parents, "{name}");
+        let last = blade.steps().nth(19).unwrap_or(blade.last_step());
+        for (&p, &q) in mature.positions.iter().zip(&literal.positions) {
+            let grown = blade.carry(q, last, blade.last_step());
+            assert!(grown.distance(blade.finished_from_mature(p)) < 1e-6, "{name}: {p} {q}");
+        }
+    });
+}
+
+fn grown(blade: &GrowingBlade, spec: &VeinSpec, seed: u64) -> Venation {
+    veins::grow(spec, blade, Seed(seed), &mut Silent).expect("veins")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn every_pattern_keeps_its_guarantees(
+        seed in 0u64..1_000_000, kind in 0usize..4, concave: bool, reach: bool, given: bool,
+    ) {
+        let mut rng = Seed(seed).stream(Stage::Tissue);
+        let (blade, spec) = case(GrowthType::ALL[kind], concave, reach, given, &mut rng);
+        let venation = grown(&blade, &spec, seed);
+        prop_assert_eq!(venation.check(blade.finished()), None);
+        let graph = venation.graph();
+        prop_assert!(graph.joins().is_empty(), "open veins never meet");
+        let roots = (0..graph.len() as u32).filter(|&node| graph.parent(node).is_none());
+        prop_assert_eq!(roots.collect::<Vec<_>>(), vec![0]);
+        prop_assert!(graph.positions()[0].length() < 1e-3);
+        prop_assert_eq!(&grown(&blade, &spec, seed), &venation);
+    }
+}
+
+#[test]
+fn veins_of_a_convex_blade_reach_every_source_in_time() {
+    let blade = GrowingBlade::new(
+        ellipse(),
+        &GrowthSpec {
+            r#type: GrowthType::None,
+            total_steps: 600,
+            start_step: 0,
+            ..GrowthSpec::default()
+        },
+    )
+    .expect("a blade");
+    let venation = grown(&blade, &VeinSpec::default(), 3);
+    assert_eq!(venation.unreached().total(), 0);
+    assert!(venation.sources() > 1000);
+    assert_eq!(venation.orders()[0], 1);
+}
+
+#[test]
+fn progress_comes_about_every_hundredth_and_ends_at_the_end() {
+    let blade = GrowingBlade::new(ellipse(), &GrowthSpec::default()).expect("a blade");
+    let mut heard: Vec<Progress> = Vec::new();
+    let mut listen = |progress: Progress| heard.push(progress);
+    veins::grow(&VeinSpec::default(), &blade, Seed(3), &mut listen).expect("veins");
+    assert!((90..=210).contains(&heard.len()), "{}", heard.len());
+    let last = heard.last().expect("reports");
+    assert_eq!((last.step, last.steps), (301, 301));
+}
+
+#[test]
+fn impossible_settings_are_errors_that_name_the_key() {
+    let blade = GrowingBlade::new(ellipse(), &GrowthSpec::default()).expect("a blade");
+    let error = |change: &dyn Fn(&mut VeinSpec)| {
+        let mut spec = VeinSpec::default();
+        change(&mut spec);
+        veins::grow(&spec, &blade, Seed(1), &mut Silent).expect_err("refused").to_string()
+    };
+    let small = error(&|spec| spec.kill_distance_mm = 0.1);
+    assert!(small.contains("veins.kill_distance_mm = 0.1") && small.contains("0.15"), "{small}");
+    let many = error(&|spec| spec.spawn_rate = 100_000.0);
+    assert!(many.contains("veins.spawn_rate"), "{many}");
+    let crowded = error(&|spec| {
+        (spec.spawn_rate, spec.source_spawn_distance_mm) = (20_000.0, 0.0);
+        (spec.vein_spawn_distance_mm, spec.attraction_distance_mm) = (0.0, 5.0);
+        (spec.node_step_mm, spec.kill_distance_mm) = (2.0, 1.0);
+    });
+    assert!(crowded.contains("spawn distance"), "{crowded}");
+    let nan = error(&|spec| spec.sources_mm = vec![[1.0, 50.0], [f64::NAN, 2.0]]);
+    assert!(nan.contains("veins.sources_mm"), "{nan}");
+    let thin = error(&|spec| spec.tip_radius_mm = 0.0);
+    assert!(thin.contains("veins.tip_radius_mm"), "{thin}");
 }

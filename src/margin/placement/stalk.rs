@@ -21,6 +21,8 @@ pub(super) struct Stalk {
     pub(super) slenderness: f64,
     /// How much wider the zip is one and a half widths beyond the attachment, in widths.
     pub(super) flare: f64,
+    /// Its width near the blade over its width near the end.
+    pub(super) widening: f64,
 }
 
 impl Stalk {
@@ -35,11 +37,14 @@ impl Stalk {
 }
 
 /// Wider than this, as a share of the root of the leaf's area, is a lobe.
-const MOST_WIDTH: f64 = 0.1;
+const MOST_WIDTH: f64 = 0.16;
 /// Shorter than this, in widths, is a tooth.
 const LEAST_SLENDERNESS: f64 = 0.7;
 /// Shorter than this, as a share of the root of the leaf's area, is a flaw of the outline.
 const LEAST_LENGTH: f64 = 0.012;
+/// The least width at a third of the length, over the typical width: a tip that grows evenly from
+/// nothing has 0.56 there.
+const LEAST_AT_THIRD: f64 = 0.7;
 /// The width at which the stalk ends, over its own width.
 const FLARED: f64 = 1.5;
 /// The cut is made where the stalk is still this wide, over its own width.
@@ -77,7 +82,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let step = ring[0].distance(ring[1]);
     let (mut from, mut to) = (end, end);
     let mut chords: Vec<Chord> = vec![Chord { from, to, width: 0.0, depth: 0.0 }];
-    let mut middle = ring[end];
+    let (mut middle, mut evened) = (ring[end], ring[end]);
     let most = 2.5 * MOST_WIDTH * size;
     while chords.len() < n / 2 {
         let (back, forth) = ((from + n - 1) % n, (to + 1) % n);
@@ -90,8 +95,10 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
             b
         };
         let next = (ring[from] + ring[to]) * 0.5;
-        let depth = chords[chords.len() - 1].depth + next.distance(middle);
-        middle = next;
+        // The banks advance in turns: over two steps the middle does not sway.
+        let even = (middle + next) * 0.5;
+        let depth = chords[chords.len() - 1].depth + even.distance(evened);
+        (middle, evened) = (next, even);
         chords.push(Chord { from, to, width, depth });
         if width > most {
             break;
@@ -104,7 +111,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let mut start = 0;
     for (k, chord) in chords.iter().enumerate() {
         widths.push(chord.width);
-        if chord.depth < LEAST_LENGTH * size || chord.depth < 3.0 * step {
+        if chord.depth < LEAST_LENGTH * size || chord.depth < 4.0 * step {
             continue;
         }
         while chords[start].depth < 0.25 * chord.depth {
@@ -113,7 +120,8 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
         let mut behind = widths[start..=k].to_vec();
         let half = behind.len() / 2;
         typical = *behind.select_nth_unstable_by(half, f64::total_cmp).1;
-        if typical > MOST_WIDTH * size {
+        // The end may be wider than the rest.
+        if typical > 1.5 * MOST_WIDTH * size {
             return None;
         }
         if chord.width > FLARED * typical {
@@ -125,7 +133,19 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let cut = chords[..flared].iter().rposition(|c| c.width <= CUT_AT * typical)?;
     let attached = &chords[cut];
     let length = attached.depth;
-    if length < LEAST_SLENDERNESS * typical || length < LEAST_LENGTH * size {
+    let too_short = length < (LEAST_SLENDERNESS * typical).max(LEAST_LENGTH * size);
+    if too_short || typical > MOST_WIDTH * size {
+        return None;
+    }
+    let third = chords.iter().find(|c| c.depth >= 0.35 * length)?;
+    if third.width < LEAST_AT_THIRD * typical {
+        return None;
+    }
+    // Both banks are as long, and the cut goes straight across; else the zip started beside a tip.
+    let (one, other) = ((end + n - attached.from) % n, (attached.to + n - end) % n);
+    let across = (ring[attached.to] - ring[attached.from]).normalize_or_zero();
+    let along = ((ring[attached.to] + ring[attached.from]) * 0.5 - ring[end]).normalize_or_zero();
+    if one.min(other) * 2 < one.max(other) || across.dot(along).abs() > 0.6 {
         return None;
     }
     // The two banks must enclose blade, not the gap between two lobes.
@@ -135,7 +155,9 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
         return None;
     }
     let beyond = chords.iter().take_while(|c| c.depth <= length + 1.5 * typical).last()?;
+    let near_blade = chords.iter().find(|c| c.depth >= 0.85 * length)?;
     Some(Stalk {
+        widening: near_blade.width / third.width,
         from: attached.from,
         to: attached.to,
         attachment: (ring[attached.from] + ring[attached.to]) * 0.5,
@@ -173,7 +195,9 @@ mod tests {
             let found = stalks(&lens(Some((length, 0.05))), 1.1);
             assert_eq!(found.len(), 1, "{found:?}");
             assert!(found[0].attachment.length() < 0.05, "{found:?}");
-            assert!((found[0].slenderness * 0.05 / length - 1.0).abs() < 0.4, "{found:?}");
+            // The lens itself is no wider than the stalk up to y = 0.03.
+            let expected = (length + 0.03) / 0.05;
+            assert!((found[0].slenderness / expected - 1.0).abs() < 0.4, "{found:?}");
         }
     }
 

@@ -1,0 +1,212 @@
+//! Open venation the slow, obvious way: every step from scratch, every source against every node.
+//!
+//! The rules are written down again here, from Runions et al. (2005) and Foster's report, and share
+//! with the library only the blade (what is inside, what blocks sight) and the map from random
+//! numbers to darts.
+
+use glam::DVec2;
+use venation::geometry::scatter::PolygonScatter;
+use venation::growth::GrowingBlade;
+use venation::seed::Rng;
+use venation::veins::VeinSpec;
+
+/// In which frame distances are measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Frame {
+    /// The mature leaf; the lengths of the model shrink.
+    Mature,
+    /// The leaf as it is: everything is carried along in every step.
+    Literal,
+}
+
+/// Nodes, each with its parent, and how many sources are left alive.
+pub(crate) struct Reference {
+    pub(crate) positions: Vec<DVec2>,
+    pub(crate) parents: Vec<Option<usize>>,
+    pub(crate) alive: usize,
+}
+
+struct World<'a> {
+    blade: &'a GrowingBlade,
+    spec: &'a VeinSpec,
+    frame: Frame,
+    step: u64,
+    positions: Vec<DVec2>,
+    parents: Vec<Option<usize>>,
+}
+
+impl World<'_> {
+    /// Factor from the frame of the mature leaf to this one.
+    fn scale(&self) -> DVec2 {
+        match self.frame {
+            Frame::Literal if self.blade.carries_tissue() => self.blade.scale_at(self.step),
+            _ => DVec2::ONE,
+        }
+    }
+
+    fn stretch(&self) -> DVec2 {
+        match self.frame {
+            Frame::Mature => self.blade.metric(self.step).stretch,
+            Frame::Literal => DVec2::ONE,
+        }
+    }
+
+    fn length(&self, mm: f64) -> f64 {
+        match self.frame {
+            Frame::Mature => self.blade.metric(self.step).length(mm),
+            Frame::Literal => mm,
+        }
+    }
+
+    fn distance2(&self, a: DVec2, b: DVec2) -> f64 {
+        ((a - b) * self.stretch()).length_squared()
+    }
+
+    fn inside(&self, p: DVec2) -> bool {
+        self.blade.is_inside(p / self.scale(), self.step)
+    }
+
+    fn hidden(&self, a: DVec2, b: DVec2) -> bool {
+        self.blade.blocks_sight(a / self.scale(), b / self.scale(), self.step)
+    }
+
+    /// The nearest node, the first among equals.
+    fn nearest(&self, p: DVec2) -> (f64, usize) {
+        let mut best = (f64::INFINITY, usize::MAX);
+        for (id, &q) in self.positions.iter().enumerate() {
+            let d2 = self.distance2(p, q);
+            if d2 < best.0 {
+                best = (d2, id);
+            }
+        }
+        best
+    }
+
+    fn dart(&self, scatter: &PolygonScatter, rng: &mut Rng, sources: &[DVec2]) -> Option<DVec2> {
+        let (u, v) = (rng.unit(), rng.unit());
+        let p = scatter.point(u, v) * self.scale();
+        let far = |q: &DVec2, mm: f64| self.distance2(p, *q) >= self.length(mm) * self.length(mm);
+        let free = sources.iter().all(|q| far(q, self.spec.source_spawn_distance_mm))
+            && self.positions.iter().all(|q| far(q, self.spec.vein_spawn_distance_mm));
+        free.then_some(p)
+    }
+
+    /// Makes a child, if there is room; `None` when the margin is in the way.
+    fn sprout(&mut self, node: usize, towards: DVec2) -> Option<()> {
+        let length = self.length(self.spec.node_step_mm);
+        let from = self.positions[node];
+        let child = from + towards * length / self.stretch();
+        for (id, &q) in self.positions.iter().enumerate() {
+            let d2 = self.distance2(child, q);
+            let sibling = self.parents[id] == Some(node) && d2 < (0.25 * length) * (0.25 * length);
+            if sibling || d2 < (1e-3 * length) * (1e-3 * length) {
+                return Some(());
+            }
+        }
+        if !self.inside(child) || self.hidden(from, child) {
+            return None;
+        }
+        self.positions.push(child);
+        self.parents.push(Some(node));
+        Some(())
+    }
+
+    fn extend(&mut self, node: usize, callers: &[DVec2]) {
+        let from = self.positions[node];
+        let unit = |p: DVec2| {
+            let towards = (p - from) * self.stretch();
+            towards / towards.length_squared().sqrt()
+        };
+        let units: Vec<DVec2> = callers.iter().map(|&p| unit(p)).collect();
+        let sum = |units: &[DVec2]| units.iter().fold(DVec2::ZERO, |sum, unit| sum + *unit);
+        let mut first = 0;
+        // Opposed sources: the first gets a child of its own, until the rest agree.
+        while units.len() - first > 1 && sum(&units[first..]).length_squared() < 1.0 - 1e-9 {
+            self.sprout(node, units[first]);
+            first += 1;
+        }
+        let pull = sum(&units[first..]);
+        let blocked = pull.length() > 0.0 && self.sprout(node, pull / pull.length()).is_none();
+        if blocked && units.len() - first > 1 {
+            let mut nearest = 0;
+            for i in 1..callers.len() {
+                let nearer =
+                    self.distance2(callers[i], from) < self.distance2(callers[nearest], from);
+                if nearer {
+                    nearest = i;
+                }
+            }
+            self.sprout(node, units[nearest]);
+        }
+    }
+}
+
+/// Grows open venation from `root` over at most `most_steps` steps.
+pub(crate) fn grow(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    root: DVec2,
+    rng: &mut Rng,
+    frame: Frame,
+    most_steps: usize,
+) -> Reference {
+    let first = *blade.steps().start();
+    let mut world =
+        World { blade, spec, frame, step: first, positions: Vec::new(), parents: vec![None] };
+    world.positions.push(root * world.scale());
+    let scatter = PolygonScatter::new(blade.mature().outline());
+    let given = !spec.sources_mm.is_empty();
+    let darts_fall = !given && blade.carries_tissue();
+    let mut waiting: Vec<DVec2> =
+        spec.sources_mm.iter().map(|p| DVec2::from(*p)).filter(|p| blade.covers(*p)).collect();
+    if !given && !darts_fall {
+        for _ in 0..(spec.spawn_rate * blade.steps().count() as f64) as u64 {
+            waiting.extend(world.dart(&scatter, rng, &waiting));
+        }
+    }
+    let mut sources: Vec<DVec2> = Vec::new();
+    let mut fraction = 0.0;
+    for step in blade.steps().take(most_steps) {
+        // Grow the blade and what is carried with it.
+        let before = world.scale();
+        world.step = step;
+        if world.scale() != before {
+            let carried = world.scale() / before;
+            world.positions.iter_mut().for_each(|p| *p *= carried);
+            sources.iter_mut().for_each(|p| *p *= carried);
+        }
+        // Seed sources: those the margin has passed, and this step's darts.
+        let scale = world.scale();
+        let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
+            waiting.into_iter().partition(|&p| blade.is_inside(p, step));
+        waiting = rest;
+        sources.extend(born.into_iter().map(|p| p * scale));
+        if darts_fall {
+            fraction += spec.spawn_rate * blade.scale_at(step).element_product();
+            while fraction >= 1.0 {
+                fraction -= 1.0;
+                sources.extend(world.dart(&scatter, rng, &sources));
+            }
+        }
+        // Call.
+        let reach = match spec.attraction_distance_mm {
+            0.0 => f64::INFINITY,
+            mm => world.length(mm),
+        };
+        let mut callers: Vec<Vec<DVec2>> = vec![Vec::new(); world.positions.len()];
+        for &p in &sources {
+            let (d2, node) = world.nearest(p);
+            if d2 > 0.0 && d2 <= reach * reach && !world.hidden(p, world.positions[node]) {
+                callers[node].push(p);
+            }
+        }
+        // Extend.
+        for (node, callers) in callers.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+            world.extend(node, callers);
+        }
+        // Kill.
+        let kill = world.length(spec.kill_distance_mm);
+        sources.retain(|&p| world.nearest(p).0 > kill * kill);
+    }
+    Reference { positions: world.positions, parents: world.parents, alive: sources.len() }
+}

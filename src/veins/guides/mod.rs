@@ -135,7 +135,7 @@ parameters! {
         /// How unevenly veins stand and bend.
         irregularity: number(0.2, 0.0..=1.0, ""),
         /// How far a secondary moves to end in a tooth, in spacings of the secondaries.
-        tooth_reach: number(0.6, 0.0..=2.0, ""),
+        tooth_reach: number(0.75, 0.0..=2.0, ""),
         /// Veins between two secondaries, on average.
         intersecondary_count: number(0.0, 0.0..=3.0, ""),
         /// How long they are, as a share of the way to the margin.

@@ -30,8 +30,6 @@ pub(super) struct Vein {
     pub(super) line: Vec<DVec2>,
     /// The vein that stopped it.
     pub(super) hit: Option<NodeId>,
-    /// Nothing stopped it.
-    pub(super) whole: bool,
 }
 
 impl Vein {
@@ -70,10 +68,6 @@ impl<'a> Planter<'a> {
         }
     }
 
-    pub(super) fn clearance(&self) -> f64 {
-        self.clearance
-    }
-
     pub(super) fn root(&mut self, rank: Rank) -> NodeId {
         let root = self.graph.add_root(self.ground.root());
         self.graph.set_rank(root, rank);
@@ -101,6 +95,12 @@ impl<'a> Planter<'a> {
             if !b.is_finite() || !self.ground.is_free(a, b) {
                 break;
             }
+            // A curve that is drawn tight can cross itself.
+            let own = points[..free].windows(2).rev().skip(1);
+            let near = |w: &&[DVec2]| w[0].distance_squared(b) < 16.0 * self.step * self.step;
+            if own.filter(near).any(|w| segments_touch(a, b, w[0], w[1])) {
+                break;
+            }
             hit = self.in_the_way(a, b, from, start);
             if hit.is_some() {
                 break;
@@ -110,7 +110,9 @@ impl<'a> Planter<'a> {
         if free < 3 || ((free - 1) as f64) < least * (points.len() - 1) as f64 {
             return None;
         }
-        let whole = free == points.len();
+        // A vein along the margin can begin at a branch of a secondary.
+        let least = self.graph.rank(from).map_or(0, |parent| parent.order);
+        let rank = Rank { order: rank.order.max(least), ..rank };
         let mut nodes = vec![from];
         for &p in &points[1..free] {
             let node = self.graph.sprout(nodes[nodes.len() - 1], p);
@@ -118,7 +120,7 @@ impl<'a> Planter<'a> {
             self.near.push(p);
             nodes.push(node);
         }
-        Some(Vein { nodes, line: points[..free].to_vec(), hit, whole })
+        Some(Vein { nodes, line: points[..free].to_vec(), hit })
     }
 
     /// A node of another vein that the piece a–b would touch or come too close to.
@@ -142,11 +144,9 @@ impl<'a> Planter<'a> {
             false
         });
         let joined = self.graph.joins().iter().any(|&(c, d)| {
+            let own = first && (c == from || d == from);
             let [c, d] = [c, d].map(|id| positions[id as usize]);
-            c.distance(b) < 6.0 * self.step
-                && c != start
-                && d != start
-                && segments_touch(a, b, c, d)
+            !own && segments_touch(a, b, c, d)
         });
         if joined && found.is_none() {
             return self.near.nearest(b, DVec2::ONE, f64::INFINITY).map(|nearest| nearest.id);
@@ -188,7 +188,12 @@ impl<'a> Planter<'a> {
             let own = [id, parent.unwrap_or(id)].iter().any(|&n| n == end || n == hit);
             !own && parent.is_some_and(|p| segments_touch(at, to, positions[p as usize], q))
         });
-        if !crossed {
+        let joined = graph.joins().iter().any(|&(c, d)| {
+            let linked = [c, d].iter().any(|&n| n == end || n == hit);
+            let [c, d] = [c, d].map(|id| positions[id as usize]);
+            !linked && segments_touch(at, to, c, d)
+        });
+        if !crossed && !joined {
             self.graph.join(end, hit);
         }
     }

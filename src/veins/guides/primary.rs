@@ -87,7 +87,7 @@ fn palmate(
             };
             let axis = midrib.at(0.1).2;
             let line = if let Some(tip) = tips.get(k) {
-                into_lobe(planter, origin.1, axis, side, tip.at)
+                into_lobe(planter, origin.1, side, tip.at)
             } else if tips.is_empty() {
                 let curvature = (spec.curvature + 0.25).min(0.6);
                 let (from, ahead) = (origin.1, axis);
@@ -95,7 +95,7 @@ fn palmate(
                 let course = Course { from, ahead, side, angle_deg, curvature };
                 match spec.secondary {
                     SecondaryType::Craspedodromous => course.to_margin(ground),
-                    _ => course.along_margin(ground, spec.reach.max(0.85), 0.15),
+                    _ => course.along_margin(ground, spec.reach.max(0.88), 0.4),
                 }
             } else {
                 continue;
@@ -112,13 +112,12 @@ fn palmate(
 }
 
 /// From the base into the tip of a lobe: a slight bow, or round the sinus where that is cut off.
-fn into_lobe(planter: &Planter<'_>, from: DVec2, axis: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
+fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
     let chord = tip - from;
     let bow = curve::cubic(
         [from, from + turned(chord, 6.0, side) * 0.35, from + turned(chord, 1.0, side) * 0.7, tip],
         60,
     );
-    let _ = axis;
     let inner = &bow[1..bow.len() - 2];
     if inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1])) {
         return bow;
@@ -216,16 +215,13 @@ fn recurved(
     let towards = turned(axis, spec.primary_angle_deg * share, side);
     let meet = line.len() * 2 / 5;
     let ahead = (line[meet + 1] - line[meet]).normalize_or_zero();
-    let out = 0.55 * ground_room(planter, from, towards).min(line[meet].distance(from));
+    let room = planter.ground.cast(from, towards);
+    let out = 0.55 * room.min(line[meet].distance(from));
     let back = 0.5 * line[meet].distance(from);
     let bow = [from, from + towards * out, line[meet] - ahead * back, line[meet]];
     let mut whole = curve::cubic(bow, 60);
     whole.extend(&line[meet + 1..]);
     whole
-}
-
-fn ground_room(planter: &Planter<'_>, from: DVec2, towards: DVec2) -> f64 {
-    planter.ground.cast(from, towards)
 }
 
 /// A vein of a fan: it serves the places `first..last` on the margin.

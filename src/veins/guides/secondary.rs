@@ -38,6 +38,19 @@ struct Plan {
     sway: f64,
 }
 
+impl Plan {
+    fn course(&self, parent: &Vein, share: f64) -> Course {
+        let (_, from, ahead) = parent.at(share);
+        Course {
+            from,
+            ahead,
+            side: self.side,
+            angle_deg: self.angle_deg,
+            curvature: self.curvature,
+        }
+    }
+}
+
 /// A secondary that was laid.
 struct Laid {
     vein: Vein,
@@ -143,13 +156,18 @@ impl Row<'_> {
                 }
             }));
         }
+        let tips = [0, 1].map(|s| {
+            let side: Vec<Plan> = plans.iter().map(|pair| pair[s]).collect();
+            self.teeth_for(planter, midrib, &side)
+        });
         // From the apex down, so that arches find the one above.
         let mut above: [Option<Laid>; 2] = [None, None];
-        let mut highest = [f64::INFINITY; 2];
-        for pair in plans.iter().rev() {
+        for (k, pair) in plans.iter().enumerate().rev() {
             for (s, plan) in pair.iter().enumerate() {
-                let laid =
-                    self.secondary(planter, midrib, plan, above[s].as_ref(), &mut highest[s]);
+                if self.is_between_teeth(&tips[s], k) {
+                    continue;
+                }
+                let laid = self.secondary(planter, midrib, plan, above[s].as_ref(), tips[s][k]);
                 if laid.is_some() {
                     above[s] = laid;
                 }
@@ -177,21 +195,22 @@ impl Row<'_> {
             sides.push((-lateral.side, (0.45, 0.9)));
         }
         for (side, range) in sides {
-            let mut above = None;
-            let mut highest = f64::INFINITY;
-            let places = self.places(count, range);
-            for &(place, spacing) in places.iter().rev() {
+            let mut plan = |(place, spacing): (f64, f64)| {
                 let own = draws(rng).map(|draw| draw * spec.irregularity);
-                let plan = Plan {
+                Plan {
                     share: place + 0.3 * spacing * own[0],
                     side,
                     angle_deg: spec.secondary_angle_deg + 0.5 * ANGLE_SPREAD * own[1],
                     curvature: spec.curvature + 0.25 * own[2],
                     spacing: (spacing * lateral.vein.length()).min(between),
                     sway: own[3],
-                };
-                let laid =
-                    self.secondary(planter, &lateral.vein, &plan, above.as_ref(), &mut highest);
+                }
+            };
+            let plans: Vec<Plan> = self.places(count, range).into_iter().map(&mut plan).collect();
+            let tips = self.teeth_for(planter, &lateral.vein, &plans);
+            let mut above = None;
+            for (plan, tip) in plans.iter().zip(tips).rev() {
+                let laid = self.secondary(planter, &lateral.vein, plan, above.as_ref(), tip);
                 if laid.is_some() {
                     above = laid;
                 }
@@ -199,37 +218,27 @@ impl Row<'_> {
         }
     }
 
-    /// One secondary with its arches and branches. `highest`: teeth from there on have been passed.
+    /// One secondary with its arches and branches, into the tooth `tip` if there is one for it.
     fn secondary(
         &mut self,
         planter: &mut Planter<'_>,
         parent: &Vein,
         plan: &Plan,
         above: Option<&Laid>,
-        highest: &mut f64,
+        tip: Option<Tip>,
     ) -> Option<Laid> {
         let ground = planter.ground;
         let spec = self.spec;
-        let course = |share: f64| {
-            let (_, from, ahead) = parent.at(share);
-            Course {
-                from,
-                ahead,
-                side: plan.side,
-                angle_deg: plan.angle_deg,
-                curvature: plan.curvature,
-            }
-        };
+        let course = |share: f64| plan.course(parent, share);
         let mut share = plan.share.clamp(0.01, 0.99);
         let mut full = course(share).to_margin(ground);
-        // A tooth within reach: leave so as to keep the angle, then turn the rest of the way.
-        if let Some(tip) = self.tooth(&full, plan, *highest) {
+        if let Some(tip) = tip {
+            // Leave so as to keep the angle, then turn the rest of the way.
             let (_, _, ahead) = parent.at(share);
             let shift = (tip.at - full[full.len() - 1]).dot(ahead) / parent.length();
             let most = 0.4 * plan.spacing / parent.length();
             share = (share + (0.8 * shift).clamp(-most, most)).clamp(0.01, 0.99);
             full = curve::ended_at(&course(share).to_margin(ground), tip.at);
-            *highest = tip.along;
             self.taken.push(tip.at);
         }
         let line = match (spec.rim, spec.secondary) {
@@ -315,18 +324,78 @@ impl Row<'_> {
         planter.lay(parent.at(share).0, line, SECONDARY, least)
     }
 
-    /// The tooth that a secondary should end in.
-    fn tooth(&self, line: &[DVec2], plan: &Plan, highest: f64) -> Option<Tip> {
-        let end = line[line.len() - 1];
-        let reach = self.spec.tooth_reach * plan.spacing;
-        let tallest = self.teeth.iter().map(|tip| tip.height).fold(0.0, f64::max);
-        let score = |tip: &Tip| tip.at.distance(end) / reach - 0.6 * tip.height / tallest;
-        self.teeth
+    /// The tooth that each of a row of secondaries, from base to apex, should end in: those that
+    /// bring most of them into teeth with the least bending, in the order of the row.
+    fn teeth_for(&self, planter: &Planter<'_>, parent: &Vein, plans: &[Plan]) -> Vec<Option<Tip>> {
+        let none = vec![None; plans.len()];
+        let Some(side) = plans.first().map(|plan| plan.side) else { return none };
+        let free = |tip: &&Tip| tip.side == side && !self.taken.contains(&tip.at);
+        let mut tips: Vec<Tip> = self.teeth.iter().filter(free).copied().collect();
+        if tips.is_empty() {
+            return none;
+        }
+        let ends: Vec<(DVec2, f64)> = plans
             .iter()
-            .filter(|tip| tip.side == plan.side && tip.along < highest)
-            .filter(|tip| tip.at.distance(end) <= reach && !self.taken.contains(&tip.at))
-            .min_by(|a, b| score(a).total_cmp(&score(b)))
-            .copied()
+            .map(|plan| {
+                let line =
+                    plan.course(parent, plan.share.clamp(0.01, 0.99)).to_margin(planter.ground);
+                (line[line.len() - 1], self.spec.tooth_reach * plan.spacing)
+            })
+            .collect();
+        // The inner side of a lobe runs down the margin while its vein runs up.
+        let (first, last) = (ends[0].0, ends[ends.len() - 1].0);
+        let along = |p: DVec2| {
+            let near = |a: &&Tip, b: &&Tip| a.at.distance(p).total_cmp(&b.at.distance(p));
+            tips.iter().min_by(near).map_or(0.0, |tip| tip.along)
+        };
+        if along(last) < along(first) {
+            tips.reverse();
+        }
+        let tallest = tips.iter().map(|tip| tip.height).fold(0.0, f64::max);
+        let gain = |i: usize, j: usize| {
+            let (end, reach) = ends[i];
+            let bend = tips[j].at.distance(end) / reach;
+            if bend <= 1.0 {
+                1.2 - bend + 0.6 * tips[j].height / tallest
+            } else {
+                f64::NEG_INFINITY
+            }
+        };
+        // best[i][j]: the most that the first i secondaries get from the first j teeth.
+        let mut best = vec![vec![0.0; tips.len() + 1]; plans.len() + 1];
+        for i in 1..=plans.len() {
+            for j in 1..=tips.len() {
+                let matched = best[i - 1][j - 1] + gain(i - 1, j - 1);
+                best[i][j] = matched.max(best[i - 1][j]).max(best[i][j - 1]);
+            }
+        }
+        let mut matched = none;
+        let (mut i, mut j) = (plans.len(), tips.len());
+        while i > 0 && j > 0 {
+            if best[i][j] == best[i - 1][j] {
+                i -= 1;
+            } else if best[i][j] == best[i][j - 1] {
+                j -= 1;
+            } else {
+                (i, j) = (i - 1, j - 1);
+                matched[i] = Some(tips[j]);
+            }
+        }
+        matched
+    }
+
+    /// Whether a secondary has no tooth, and those before and after it have neighbouring ones: in a
+    /// margin of large teeth each vein has its own.
+    fn is_between_teeth(&self, tips: &[Option<Tip>], k: usize) -> bool {
+        let before = tips[..k].iter().rev().find_map(|tip| *tip);
+        let after = tips[k..].iter().find_map(|tip| *tip);
+        let (Some(before), Some(after)) = (before, after) else { return false };
+        let between = |tip: &Tip| {
+            tip.side == before.side && tip.along > before.along && tip.along < after.along
+        };
+        tips[k].is_none()
+            && self.spec.secondary == SecondaryType::Craspedodromous
+            && !self.teeth.iter().any(between)
     }
 
     fn intersecondaries(

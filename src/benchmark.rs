@@ -17,6 +17,7 @@ use crate::geometry::scatter::PolygonScatter;
 use crate::growth::{GrowingBlade, GrowthError, GrowthSpec, GrowthType};
 use crate::margin::{Margin, MarginError};
 use crate::observer::Silent;
+use crate::point_list;
 use crate::seed::{Seed, Stage};
 use crate::veins::{self, Unreached, VeinError, VeinSpec};
 
@@ -154,14 +155,8 @@ impl Workload {
             }
         }
         let margin = Margin::new(outline, apex, Vec::new(), "mend polygon there")?;
-        let mut places = Vec::new();
-        for (i, line) in sources.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let numbers: Vec<f64> = line.split(',').filter_map(|x| x.trim().parse().ok()).collect();
-            let [x, y] = numbers[..] else {
-                return Err(text(format!("sources, line {}: {line:?} is not `x,y`", i + 1)));
-            };
-            places.push([x * LENGTH_MM, y * LENGTH_MM]);
-        }
+        let places = point_list::parse(sources).map_err(|e| text(format!("sources, {e}")))?;
+        let places = places.iter().map(|p| p.map(|x| x * LENGTH_MM)).collect();
         let veins = VeinSpec {
             kill_distance_mm: read.kill * LENGTH_MM,
             node_step_mm: read.segment * LENGTH_MM,

@@ -18,6 +18,8 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// How the guided veins vary.
+    Guides,
     /// Where the particles start.
     Particles,
     /// Where the speckles lie.
@@ -32,6 +34,7 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Guides => "stage/guides",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",

@@ -4,11 +4,11 @@
 mod cases;
 mod trails;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use rayon::prelude::*;
 use venation::document::Document;
-use venation::io::{self, write::Overwrite};
+use venation::io;
 use venation::observer::Silent;
 use venation::pipeline::{self, Grown};
 use venation::raster::montage::{self, Layout, Panel};
@@ -70,12 +70,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         (None, Some(seed)) => vec![seed],
         (None, None) => vec![document.seed.unwrap_or(1)],
     };
-    for path in args.out.iter().chain(&args.csv) {
-        if path.exists() && !args.force {
-            let problem = format!("{}: exists already; --force overwrites", path.display());
-            return Err(Failure::Exists(problem));
-        }
-    }
+    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
     let cases = args.by.cases();
     let work: Vec<(Case, u64)> =
         seeds.iter().flat_map(|&seed| cases.iter().map(move |&case| (case, seed))).collect();
@@ -86,11 +81,11 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if let Some(path) = &args.out {
         let name = leaf_args::resolve(&document, seeds[0])?.name;
         let title = format!("{name}: {}, seed {}", args.by.title(), seeds[0]);
-        save(path, sheet(&title, args.by, &mut cells)?)?;
+        super::save(path, sheet(&title, args.by, &mut cells)?)?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if let Some(path) = &args.csv {
-        save(path, table(args.by, &cells).into_bytes())?;
+        super::save(path, table(args.by, &cells).into_bytes())?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if !context.quiet {
@@ -139,13 +134,6 @@ fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
     let panel_px = first.picture.width().min(PANEL_PX);
     let picture = montage::sheet(title, &panels, Layout { columns: by.columns(), panel_px });
     Ok(io::image::colour_png(&picture, &io::image::Caption::default()))
-}
-
-fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    io::write::write_files(folder, &[(name, bytes)], Overwrite::Force)
-        .map_err(|error| Failure::Input(error.to_string()))
 }
 
 fn table(by: By, cells: &[Cell]) -> String {

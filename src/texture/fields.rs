@@ -2,7 +2,7 @@
 //!
 //! Veins are drawn at full resolution, band by band, from tapered capsules, each within its own
 //! box. What varies slowly (distance to the margin, to the larger veins, the reach of the colour
-//! schemes, broad mottling) is computed on a coarser [`Guide`] and read in between.
+//! schemes, broad mottling) is computed on a coarser guide ([`super::guide`]) and read in between.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
-pub(super) use super::guide::{Guide, Place};
+pub(super) use super::guide::Place;
 
 /// Half the window through which a texel sees a vein (px). At 0.5 a slanted vein finer than a
 /// texel falls into dashes; at 1 everything is soft.

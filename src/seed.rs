@@ -28,6 +28,8 @@ pub enum Stage {
     Tissue,
     /// The bend of the petiole.
     Petiole,
+    /// Values dealt anew, for comparison with the order they are in.
+    Shuffle,
 }
 
 impl Stage {
@@ -39,6 +41,7 @@ impl Stage {
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
             Self::Petiole => "stage/petiole",
+            Self::Shuffle => "stage/shuffle",
         }
     }
 }

@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
         results.lines.push(line);
         Ok(())
     };
-    let head = ["", "auxins", "nodes", "steps", "seconds", "µs/node"];
+    let head = ["", "auxins", "nodes", "steps", "CPU s", "wall s"];
     writeln!(out, "{}  not reached", columns(head.map(String::from)))?;
     if let Some(Suite::Foster) = args.suite {
         let blade = benchmark::beech_like_blade();
@@ -153,13 +153,13 @@ fn median(
     mut run: impl FnMut() -> Result<Measure, BenchmarkError>,
 ) -> Result<Measure, BenchmarkError> {
     let mut measures = (0..runs).map(|_| run()).collect::<Result<Vec<_>, _>>()?;
-    measures.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    measures.sort_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
     Ok(measures.swap_remove(measures.len() / 2))
 }
 
 fn columns(cells: [String; 6]) -> String {
-    let [name, sources, nodes, steps, seconds, per_node] = cells;
-    format!("{name:<28}{sources:>8}{nodes:>9}{steps:>7}{seconds:>10}{per_node:>9}")
+    let [name, sources, nodes, steps, cpu, wall] = cells;
+    format!("{name:<28}{sources:>8}{nodes:>9}{steps:>7}{cpu:>10}{wall:>10}")
 }
 
 fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
@@ -169,8 +169,8 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
         m.sources.to_string(),
         m.nodes.to_string(),
         m.steps.to_string(),
+        format!("{:.4}", m.cpu_seconds),
         format!("{:.4}", m.seconds),
-        format!("{:.2}", 1e6 * m.seconds / m.nodes as f64),
     ];
     let report = match line.printed_seconds {
         Some(seconds) if seconds >= benchmark::FOSTER_GAVE_UP => {
@@ -184,16 +184,17 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
 
 fn csv(lines: &[Line]) -> String {
     let mut text = String::from(
-        "name,printed_seconds,auxins,nodes,steps,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
+        "name,printed_seconds,auxins,nodes,steps,cpu_seconds,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
     );
     for Line { name, printed_seconds, measure: m } in lines {
         let printed = printed_seconds.map_or(String::new(), |seconds| seconds.to_string());
         let left = &m.unreached;
         text += &format!(
-            "{name},{printed},{},{},{},{},{},{},{},{},{}\n",
+            "{name},{printed},{},{},{},{},{},{},{},{},{},{}\n",
             m.sources,
             m.nodes,
             m.steps,
+            m.cpu_seconds,
             m.seconds,
             left.outside,
             left.too_young,

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{NodeId, Venation};
+use crate::veins::{NodeId, Venation};
 use crate::margin::Margin;
 
 /// Measures of one vein pattern.

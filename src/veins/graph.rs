@@ -179,7 +179,9 @@ impl VeinGraph {
             return Some("two nodes at one position".into());
         }
         let order = |node: NodeId| self.rank(node).map_or(u8::MAX, |rank| rank.order);
-        if let Some((_, node)) = self.edges().find(|&(p, c)| self.rank(c).is_some() && order(p) > order(c)) {
+        if let Some((_, node)) =
+            self.edges().find(|&(p, c)| self.rank(c).is_some() && order(p) > order(c))
+        {
             return Some(format!("node {node} has a rank, and its parent none or a higher one"));
         }
         let n = self.len() as NodeId;

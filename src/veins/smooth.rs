@@ -122,7 +122,9 @@ fn low_pass(
                 back.extend([parent, child]);
             }
         }
-        back.extend(doubles(&placed).into_iter().filter(|&n| placed[n as usize] != home[n as usize]));
+        back.extend(
+            doubles(&placed).into_iter().filter(|&n| placed[n as usize] != home[n as usize]),
+        );
         if back.is_empty() {
             return placed;
         }

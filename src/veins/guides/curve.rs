@@ -22,7 +22,10 @@ pub(super) fn length(line: &[DVec2]) -> f64 {
 pub(super) fn cubic(p: [DVec2; 4], pieces: usize) -> Vec<DVec2> {
     let at = |t: f64| {
         let s = 1.0 - t;
-        p[0] * (s * s * s) + p[1] * (3.0 * s * s * t) + p[2] * (3.0 * s * t * t) + p[3] * (t * t * t)
+        p[0] * (s * s * s)
+            + p[1] * (3.0 * s * s * t)
+            + p[2] * (3.0 * s * t * t)
+            + p[3] * (t * t * t)
     };
     (0..=pieces).map(|i| at(i as f64 / pieces as f64)).collect()
 }

@@ -109,7 +109,8 @@ impl<'a> Ground<'a> {
     /// From the root to the apex: straight, or along the middle of a bent blade.
     pub(super) fn axis(&self) -> Vec<DVec2> {
         let tip = self.margin.apex();
-        let straight: Vec<DVec2> = (0..=100).map(|i| self.root.lerp(tip, f64::from(i) / 100.0)).collect();
+        let straight: Vec<DVec2> =
+            (0..=100).map(|i| self.root.lerp(tip, f64::from(i) / 100.0)).collect();
         if self.is_upright() {
             return straight;
         }
@@ -138,9 +139,8 @@ impl<'a> Ground<'a> {
         let bounds = self.margin.bounds();
         let cell = bounds.size().max_element() / CELLS;
         let size = (bounds.size() / cell).ceil().as_usizevec2() + glam::USizeVec2::ONE;
-        let place = |i: usize| {
-            bounds.min + DVec2::new((i % size.x) as f64, (i / size.x) as f64) * cell
-        };
+        let place =
+            |i: usize| bounds.min + DVec2::new((i % size.x) as f64, (i / size.x) as f64) * cell;
         // What a step costs: dear near the margin, dearer still outside.
         let cost: Vec<Option<f64>> = (0..size.x * size.y)
             .map(|i| {
@@ -155,9 +155,9 @@ impl<'a> Ground<'a> {
             .collect();
         let home = |p: DVec2| {
             let seen = |i: &usize| cost[*i].is_some() && !self.lines_between(p, place(*i));
-            (0..cost.len())
-                .filter(seen)
-                .min_by(|&i, &j| place(i).distance_squared(p).total_cmp(&place(j).distance_squared(p)))
+            (0..cost.len()).filter(seen).min_by(|&i, &j| {
+                place(i).distance_squared(p).total_cmp(&place(j).distance_squared(p))
+            })
         };
         let (start, goal) = (home(from)?, home(to)?);
         let mut best = vec![f64::INFINITY; cost.len()];

@@ -39,7 +39,8 @@ impl Vein {
     pub(super) fn at(&self, share: f64) -> (NodeId, DVec2, DVec2) {
         let last = self.nodes.len() - 1;
         // Nodes stand at equal steps.
-        let i = ((share * last as f64).round() as usize).clamp(1.min(last), last.max(2) - 1).min(last);
+        let i =
+            ((share * last as f64).round() as usize).clamp(1.min(last), last.max(2) - 1).min(last);
         let wide = (last / 40).max(2);
         let (a, b) = (i.saturating_sub(wide), (i + wide).min(last));
         let ahead = (self.line[b] - self.line[a]).normalize_or_zero();
@@ -132,8 +133,8 @@ impl<'a> Planter<'a> {
             let close = if leaving { 0.05 * self.step } else { self.clearance };
             let parent = self.graph.parent(id);
             let own = first && (id == from || parent == Some(from));
-            let crosses = !own
-                && parent.is_some_and(|p| segments_touch(a, b, positions[p as usize], q));
+            let crosses =
+                !own && parent.is_some_and(|p| segments_touch(a, b, positions[p as usize], q));
             let is_close = d2 < close * close;
             if (crosses || is_close) && found.is_none_or(|best| (d2, id) < best) {
                 found = Some((d2, id));
@@ -142,7 +143,10 @@ impl<'a> Planter<'a> {
         });
         let joined = self.graph.joins().iter().any(|&(c, d)| {
             let [c, d] = [c, d].map(|id| positions[id as usize]);
-            c.distance(b) < 6.0 * self.step && c != start && d != start && segments_touch(a, b, c, d)
+            c.distance(b) < 6.0 * self.step
+                && c != start
+                && d != start
+                && segments_touch(a, b, c, d)
         });
         if joined && found.is_none() {
             return self.near.nearest(b, DVec2::ONE, f64::INFINITY).map(|nearest| nearest.id);
@@ -156,7 +160,8 @@ impl<'a> Planter<'a> {
         let points = curve::resampled(line, self.step);
         let near = |p: DVec2| self.near.nearest(p, DVec2::ONE, f64::INFINITY);
         let free = 1.6 * self.clearance;
-        let first = points.iter().position(|&p| near(p).is_some_and(|n| n.distance2 > free * free))?;
+        let first =
+            points.iter().position(|&p| near(p).is_some_and(|n| n.distance2 > free * free))?;
         // Out of a node farther back, so that it leaves at a small angle.
         let back = points[first.saturating_sub(6)];
         let from = near(back)?.id;
@@ -171,7 +176,8 @@ impl<'a> Planter<'a> {
         let (end, at, _) = vein.end();
         let to = self.graph.positions()[hit as usize];
         let (graph, positions) = (&self.graph, self.graph.positions());
-        let related = end == hit || graph.parent(end) == Some(hit) || graph.parent(hit) == Some(end);
+        let related =
+            end == hit || graph.parent(end) == Some(hit) || graph.parent(hit) == Some(end);
         if related || !self.ground.is_free(at, to) {
             return;
         }

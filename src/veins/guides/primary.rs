@@ -115,12 +115,7 @@ fn palmate(
 fn into_lobe(planter: &Planter<'_>, from: DVec2, axis: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
     let chord = tip - from;
     let bow = curve::cubic(
-        [
-            from,
-            from + turned(chord, 6.0, side) * 0.35,
-            from + turned(chord, 1.0, side) * 0.7,
-            tip,
-        ],
+        [from, from + turned(chord, 6.0, side) * 0.35, from + turned(chord, 1.0, side) * 0.7, tip],
         60,
     );
     let _ = axis;
@@ -246,7 +241,10 @@ fn fan(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
     let ground = planter.ground;
     let base = ground.root();
     // The part of the margin that the veins reach: what is seen from the base within the angle.
-    let line = crate::geometry::polygon::resampled(ground.margin().outline(), 0.25 * spec.fork_spacing_mm.min(ground.length() / 8.0));
+    let line = crate::geometry::polygon::resampled(
+        ground.margin().outline(),
+        0.25 * spec.fork_spacing_mm.min(ground.length() / 8.0),
+    );
     let within = |p: &&DVec2| {
         let angle = (**p - base).angle_to(DVec2::Y).abs().to_degrees();
         angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(**p, 0.97))
@@ -293,7 +291,8 @@ fn fan(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
         let leave = (start + towards * 1.5).normalize_or(towards);
         let arrive = (middle - base).normalize_or(towards);
         let bow = [from, from + leave * (0.35 * chord), to - arrive * (0.35 * chord), to];
-        let behind = (to - from).dot(middle - base) <= 2.5 * planter.step * (middle - base).length();
+        let behind =
+            (to - from).dot(middle - base) <= 2.5 * planter.step * (middle - base).length();
         let end = if behind && served > 1 {
             Some((ray.from, ray.ahead))
         } else {

@@ -78,7 +78,8 @@ impl Rim {
                 if polygon::segments_touch(w[0], w[1], r[0], r[1]) {
                     let (d, e) = (w[1] - w[0], r[1] - r[0]);
                     let across = d.perp_dot(e);
-                    let share = if across == 0.0 { 1.0 } else { (r[0] - w[0]).perp_dot(e) / across };
+                    let share =
+                        if across == 0.0 { 1.0 } else { (r[0] - w[0]).perp_dot(e) / across };
                     kept.push(w[0] + d * share.clamp(0.0, 1.0));
                     return kept;
                 }
@@ -117,10 +118,11 @@ impl Rim {
             }
             // Primaries that come near feed it as well.
             for lateral in primaries.laterals.iter().filter(|lateral| lateral.side == side) {
-                let near = lateral.vein.nodes.iter().zip(&lateral.vein.line).filter_map(|(&n, &p)| {
-                    let (along, distance) = self.nearest(p, side)?;
-                    (distance < 2.0 * planter.step).then_some((distance, along, n))
-                });
+                let near =
+                    lateral.vein.nodes.iter().zip(&lateral.vein.line).filter_map(|(&n, &p)| {
+                        let (along, distance) = self.nearest(p, side)?;
+                        (distance < 2.0 * planter.step).then_some((distance, along, n))
+                    });
                 if let Some((_, along, node)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) {
                     self.landings[of(side)].push((along, node));
                 }

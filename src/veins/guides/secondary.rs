@@ -71,10 +71,8 @@ pub(super) fn lay(
         };
         let mut row = Row { spec, teeth, taken: Vec::new(), rim: &mut rim };
         row.both_sides(planter, midrib, count, (first, spec.last_at), rng);
-        let palmate = matches!(
-            spec.primary,
-            PrimaryType::Actinodromous | PrimaryType::Palinactinodromous
-        );
+        let palmate =
+            matches!(spec.primary, PrimaryType::Actinodromous | PrimaryType::Palinactinodromous);
         if palmate {
             for lateral in &primaries.laterals {
                 row.lateral(planter, lateral, between, rng);
@@ -96,14 +94,14 @@ struct Row<'a> {
 impl Row<'_> {
     /// Where `count` secondaries leave between two shares of a vein, with the spacing at each.
     fn places(&self, count: usize, (first, last): (f64, f64)) -> Vec<(f64, f64)> {
-        let weight = |k: usize| {
-            1.0 - self.spec.spacing_change * (k as f64 + 0.5) / count.max(2) as f64
-        };
+        let weight =
+            |k: usize| 1.0 - self.spec.spacing_change * (k as f64 + 0.5) / count.max(2) as f64;
         let total: f64 = (0..count.saturating_sub(1)).map(weight).sum();
         let mut at = first;
         (0..count)
             .map(|k| {
-                let spacing = if total > 0.0 { weight(k) / total * (last - first) } else { last - first };
+                let spacing =
+                    if total > 0.0 { weight(k) / total * (last - first) } else { last - first };
                 let place = (at, spacing);
                 at += spacing;
                 place
@@ -149,7 +147,8 @@ impl Row<'_> {
         let mut highest = [f64::INFINITY; 2];
         for pair in plans.iter().rev() {
             for (s, plan) in pair.iter().enumerate() {
-                let laid = self.secondary(planter, midrib, plan, above[s].as_ref(), &mut highest[s]);
+                let laid =
+                    self.secondary(planter, midrib, plan, above[s].as_ref(), &mut highest[s]);
                 if laid.is_some() {
                     above[s] = laid;
                 }
@@ -258,7 +257,8 @@ impl Row<'_> {
         if vein.hit.is_some() && crosses {
             planter.join_hit(&vein);
         }
-        if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous) {
+        if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous)
+        {
             self.rim.landed(&vein, plan.side);
             return Some(Laid { vein, arch: None });
         }
@@ -283,7 +283,8 @@ impl Row<'_> {
             spec.secondary,
             SecondaryType::FestoonedSemicraspedodromous | SecondaryType::FestoonedBrochidodromous
         );
-        if let (true, Some(arch), Some(upper)) = (festooned, &arch, above.and_then(|a| a.arch.as_ref()))
+        if let (true, Some(arch), Some(upper)) =
+            (festooned, &arch, above.and_then(|a| a.arch.as_ref()))
         {
             festoon(planter, arch, upper, plan);
         }
@@ -337,7 +338,8 @@ impl Row<'_> {
         let [a, b, c] = [rng.unit(), rng.unit(), rng.unit()];
         let count = (spec.intersecondary_count + a).floor() as usize;
         for i in 0..count {
-            let part = (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
+            let part =
+                (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
             let share = lower.share + (upper.share - lower.share) * part;
             let (node, from, ahead) = midrib.at(share);
             let course = Course {

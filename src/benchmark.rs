@@ -20,7 +20,7 @@ use crate::margin::{Margin, MarginError};
 use crate::observer::Silent;
 use crate::point_list;
 use crate::seed::{Seed, Stage};
-use crate::veins::{self, VeinGraph, Unreached, VeinError, VeinSpec};
+use crate::veins::{self, Unreached, VeinError, VeinGraph, VeinSpec};
 
 /// Sides of the polygon that stands for the ellipse.
 const SIDES: usize = 256;
@@ -198,8 +198,7 @@ fn measure(
     roots.add_root(root);
     let (wall, processor) = (Instant::now(), ThreadTime::now());
     let grown = veins::auxin::grow(spec, blade, roots, &mut rng, &mut Silent)?;
-    let (seconds, cpu_seconds) =
-        (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
+    let (seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),

@@ -23,6 +23,8 @@ mod pattern;
 pub mod picture;
 pub mod rows;
 mod statistics;
+#[cfg(test)]
+mod tests;
 pub mod strahler;
 pub mod topology;
 

@@ -122,9 +122,7 @@ fn table(read: &ReadNetwork, m: &Measures) -> String {
     text += &format!("{} of {} rows inside\n\n", m.rows_inside(), m.rows.len());
     m.others.iter().for_each(|measure| line(&mut text, "", measure));
     if !m.orders.is_empty() {
-        text += &format!(
-            "\norder  segments  length {unit}  {unit}/{unit}²  width {unit}\n"
-        );
+        text += &format!("\norder  segments  length {unit}  {unit}/{unit}²  width {unit}\n");
     }
     for o in &m.orders {
         text += &format!(
@@ -212,9 +210,9 @@ fn document(read: &ReadNetwork, m: &Measures) -> Value {
             "width": o.width,
         })
     });
-    let strahler = m.strahler.iter().map(|s| {
-        json!({ "order": s.order, "streams": s.streams, "length": s.length, "width": s.width })
-    });
+    let strahler = m.strahler.iter().map(
+        |s| json!({ "order": s.order, "streams": s.streams, "length": s.length, "width": s.width }),
+    );
     let angles = m.angles.iter().map(|bin| {
         json!({
             "width_ratio": bin.ratio,

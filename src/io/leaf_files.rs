@@ -107,9 +107,11 @@ fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String,
             FormatKind::GraphMl => {
                 entries.push((format!("{stem}_veins.graphml"), Content::GraphMl));
             }
-            FormatKind::Csv => entries.extend(Table::ALL.iter().map(|&table| {
-                (format!("{stem}_{}.csv", table.word()), Content::Table(table))
-            })),
+            FormatKind::Csv => entries.extend(
+                Table::ALL
+                    .iter()
+                    .map(|&table| (format!("{stem}_{}.csv", table.word()), Content::Table(table))),
+            ),
         }
     }
     entries

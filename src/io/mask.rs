@@ -103,9 +103,7 @@ fn read_png(reader: impl BufRead + Seek) -> Result<Grid<bool>, String> {
 fn is_white(samples: &[u8]) -> bool {
     let (grey, alpha) = match *samples {
         [grey, alpha] => (u32::from(grey) * 1000, alpha),
-        [r, g, b, alpha] => {
-            (299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b), alpha)
-        }
+        [r, g, b, alpha] => (299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b), alpha),
         _ => return false,
     };
     u64::from(grey) * u64::from(alpha) > 127 * 1000 * 255

@@ -86,7 +86,9 @@ impl Skeleton {
                     walked.insert((first, start));
                     while !node_of.contains_key(&at) {
                         let before = line[line.len() - 2];
-                        let Some(next) = links(thin, at).find(|&next| next != before) else { break };
+                        let Some(next) = links(thin, at).find(|&next| next != before) else {
+                            break;
+                        };
                         walked.insert((at, next));
                         walked.insert((next, at));
                         line.push(next);

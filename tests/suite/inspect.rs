@@ -9,8 +9,18 @@ use crate::support::{fail, fresh, run, succeed};
 
 fn small_leaf(folder: &Path) {
     let arguments = [
-        "generate", "beech", "--size", "16", "--set", "margin.length_mm=20", "--maps", "none",
-        "--format", "json,graphml,csv", "-o", "leaf",
+        "generate",
+        "beech",
+        "--size",
+        "16",
+        "--set",
+        "margin.length_mm=20",
+        "--maps",
+        "none",
+        "--format",
+        "json,graphml,csv",
+        "-o",
+        "leaf",
     ];
     succeed(folder, &arguments);
 }
@@ -30,10 +40,13 @@ fn a_made_leaf_is_measured_from_its_folder_and_from_its_graph() {
     assert!(table.contains("order  segments"), "{table}");
     let graph = only(&folder.path().join("leaf"), "_veins.json");
     let graph = graph.to_string_lossy();
-    assert_eq!(table, succeed(folder.path(), &["inspect", &graph]).replace(
-        &*graph,
-        &Path::new("leaf").join(Path::new(&*graph).file_name().unwrap()).to_string_lossy(),
-    ));
+    assert_eq!(
+        table,
+        succeed(folder.path(), &["inspect", &graph]).replace(
+            &*graph,
+            &Path::new("leaf").join(Path::new(&*graph).file_name().unwrap()).to_string_lossy(),
+        )
+    );
     let json: Value =
         serde_json::from_str(&succeed(folder.path(), &["inspect", "leaf", "--json"])).unwrap();
     let rows = json["rows"].as_array().unwrap();

@@ -167,8 +167,7 @@ impl Moments {
         self.first += (a + b) * doubled / 6.0;
         self.xx += (a.x * a.x + a.x * b.x + b.x * b.x) * doubled / 12.0;
         self.yy += (a.y * a.y + a.y * b.y + b.y * b.y) * doubled / 12.0;
-        self.xy +=
-            (a.x * b.y + 2.0 * a.x * a.y + 2.0 * b.x * b.y + b.x * a.y) * doubled / 24.0;
+        self.xy += (a.x * b.y + 2.0 * a.x * a.y + 2.0 * b.x * b.y + b.x * a.y) * doubled / 24.0;
     }
 
     /// From the eigenvalues of the second moments about the centre of mass.

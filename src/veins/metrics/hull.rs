@@ -61,8 +61,9 @@ fn reach(network: &Network, bounds: Rect) -> f64 {
 fn reachable_from_border(mask: &Grid<bool>) -> Vec<bool> {
     let (width, height) = (mask.width(), mask.height());
     let mut outside = vec![false; width * height];
-    let is_border =
-        |i: &usize| i % width == 0 || i % width == width - 1 || i / width == 0 || i / width == height - 1;
+    let is_border = |i: &usize| {
+        i % width == 0 || i % width == width - 1 || i / width == 0 || i / width == height - 1
+    };
     let mut open: Vec<usize> =
         (0..width * height).filter(is_border).filter(|&i| !mask.values()[i]).collect();
     open.iter().for_each(|&i| outside[i] = true);

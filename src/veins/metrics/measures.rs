@@ -177,17 +177,28 @@ impl Measures {
             _ => unreachable!("every row has a value"),
         };
         let mut others = Vec::new();
-        let mut other = |key: &str, name: &str, value: Option<f64>, band: Option<RangeInclusive<f64>>| {
-            others.push(Measure::new(key, name, value, band));
-        };
+        let mut other =
+            |key: &str, name: &str, value: Option<f64>, band: Option<RangeInclusive<f64>>| {
+                others.push(Measure::new(key, name, value, band));
+            };
         if unit == Unit::Millimetre {
             other("vla", "vein length per area, mm/mm²", vla, Some(2.0..=15.0));
             let density = ratio(count(list.len()), blade_area);
             other("areole_density", "areoles per mm²", density, Some(3.7..=42.0));
         }
         let sqrt_areole = mean(&areas).map(f64::sqrt);
-        other("vla_x_sqrt_areole", "VLA x √mean areole area", vla.zip(sqrt_areole).map(|(a, b)| a * b), Some(1.22..=2.32));
-        other("vla_x_leaf_sqrt_area", "VLA x √blade area", vla.map(|vla| vla * blade_area.sqrt()), Some(48.9..=373.0));
+        other(
+            "vla_x_sqrt_areole",
+            "VLA x √mean areole area",
+            vla.zip(sqrt_areole).map(|(a, b)| a * b),
+            Some(1.22..=2.32),
+        );
+        other(
+            "vla_x_leaf_sqrt_area",
+            "VLA x √blade area",
+            vla.map(|vla| vla * blade_area.sqrt()),
+            Some(48.9..=373.0),
+        );
         for (times, band) in
             [(1.25, 0.14..=0.30), (1.5, 0.06..=0.19), (3.0, 0.009..=0.043), (5.0, 0.0..=0.018)]
         {
@@ -195,34 +206,139 @@ impl Measures {
             let name = format!("length share over {times} median widths");
             other(&key, &name, over(times), Some(band));
         }
-        other("areole_area_variation", "areole area, deviation / mean", variation(&areas), Some(0.57..=1.03));
-        other("areole_elongation_mean", "areole elongation, mean", mean(&elongations), Some(1.48..=1.63));
-        other("areole_elongation_p95", "areole elongation, 95th percentile", quantile(&elongations, 0.95), Some(2.07..=2.4));
-        other("areole_circularity_p5", "areole circularity, 5th percentile", quantile(&circularities, 0.05), Some(0.48..=0.84));
-        other("areole_circularity_p95", "areole circularity, 95th percentile", quantile(&circularities, 0.95), Some(0.48..=0.84));
-        other("areole_segments_p5", "segments per areole, 5th percentile", quantile(&sides, 0.05), Some(4.0..=11.0));
-        other("areole_segments_p95", "segments per areole, 95th percentile", quantile(&sides, 0.95), Some(4.0..=11.0));
-        other("degree_4_share", "four-way share of junctions", ratio(count(topology.degree_4), count(topology.junctions)), Some(0.0..=0.04));
-        other("ending_share", "free endings / nodes", ratio(count(topology.free_ends), count(topology.nodes)), Some(0.084..=0.372));
-        other("junctions_per_areole", "junctions / areoles", ratio(count(topology.junctions), count(list.len())), Some(1.78..=4.11));
-        other("tortuosity_p95", "tortuosity, 95th percentile", quantile(&tortuosities, 0.95), Some(1.0..=1.17));
-        other("vla_x_distance_median", "VLA x median distance to vein", scaled(|d| Some(d.median)), Some(0.25..=0.27));
-        other("vla_x_distance_p95", "VLA x 95th percentile of distance", scaled(|d| Some(d.p95)), Some(0.63..=0.76));
-        other("inradius_variation", "areole inradius, deviation / mean", distances.and_then(|d| d.inradius_variation), Some(0.18..=0.26));
+        other(
+            "areole_area_variation",
+            "areole area, deviation / mean",
+            variation(&areas),
+            Some(0.57..=1.03),
+        );
+        other(
+            "areole_elongation_mean",
+            "areole elongation, mean",
+            mean(&elongations),
+            Some(1.48..=1.63),
+        );
+        other(
+            "areole_elongation_p95",
+            "areole elongation, 95th percentile",
+            quantile(&elongations, 0.95),
+            Some(2.07..=2.4),
+        );
+        other(
+            "areole_circularity_p5",
+            "areole circularity, 5th percentile",
+            quantile(&circularities, 0.05),
+            Some(0.48..=0.84),
+        );
+        other(
+            "areole_circularity_p95",
+            "areole circularity, 95th percentile",
+            quantile(&circularities, 0.95),
+            Some(0.48..=0.84),
+        );
+        other(
+            "areole_segments_p5",
+            "segments per areole, 5th percentile",
+            quantile(&sides, 0.05),
+            Some(4.0..=11.0),
+        );
+        other(
+            "areole_segments_p95",
+            "segments per areole, 95th percentile",
+            quantile(&sides, 0.95),
+            Some(4.0..=11.0),
+        );
+        other(
+            "degree_4_share",
+            "four-way share of junctions",
+            ratio(count(topology.degree_4), count(topology.junctions)),
+            Some(0.0..=0.04),
+        );
+        other(
+            "ending_share",
+            "free endings / nodes",
+            ratio(count(topology.free_ends), count(topology.nodes)),
+            Some(0.084..=0.372),
+        );
+        other(
+            "junctions_per_areole",
+            "junctions / areoles",
+            ratio(count(topology.junctions), count(list.len())),
+            Some(1.78..=4.11),
+        );
+        other(
+            "tortuosity_p95",
+            "tortuosity, 95th percentile",
+            quantile(&tortuosities, 0.95),
+            Some(1.0..=1.17),
+        );
+        other(
+            "vla_x_distance_median",
+            "VLA x median distance to vein",
+            scaled(|d| Some(d.median)),
+            Some(0.25..=0.27),
+        );
+        other(
+            "vla_x_distance_p95",
+            "VLA x 95th percentile of distance",
+            scaled(|d| Some(d.p95)),
+            Some(0.63..=0.76),
+        );
+        other(
+            "inradius_variation",
+            "areole inradius, deviation / mean",
+            distances.and_then(|d| d.inradius_variation),
+            Some(0.18..=0.26),
+        );
         let all_angles: Vec<f64> = junctions.iter().flat_map(Junction::angles).collect();
         other("angle_mean", "junction angles, mean", mean(&all_angles), None);
-        other("angle_deviation", "junction angles, deviation", deviation(&all_angles), Some(26.0..=29.0));
-        other("t_junctions", "share of junctions with an angle over 150°", share(&largest, |angle| *angle > 150.0), Some(0.29..=0.36));
-        other("imbalance_p0", "force imbalance at p = 0, median", imbalance(0.0), Some(0.16..=0.19));
-        other("imbalance_p2", "force imbalance at p = 2, median", imbalance(2.0), Some(0.15..=0.16));
+        other(
+            "angle_deviation",
+            "junction angles, deviation",
+            deviation(&all_angles),
+            Some(26.0..=29.0),
+        );
+        other(
+            "t_junctions",
+            "share of junctions with an angle over 150°",
+            share(&largest, |angle| *angle > 150.0),
+            Some(0.29..=0.36),
+        );
+        other(
+            "imbalance_p0",
+            "force imbalance at p = 0, median",
+            imbalance(0.0),
+            Some(0.16..=0.19),
+        );
+        other(
+            "imbalance_p2",
+            "force imbalance at p = 2, median",
+            imbalance(2.0),
+            Some(0.15..=0.16),
+        );
         let second: Vec<f64> = junctions.iter().map(|j| j.widths[1] / j.widths[0]).collect();
-        other("second_width_median", "second / widest width at a junction, median", median(&second), Some(0.88..=0.91));
+        other(
+            "second_width_median",
+            "second / widest width at a junction, median",
+            median(&second),
+            Some(0.88..=0.91),
+        );
         let murray: Vec<f64> = junctions.iter().map(Junction::murray_exponent).collect();
         other("murray_median", "Murray exponent, median", median(&murray), Some(2.6..=3.9));
         let area_ratios: Vec<f64> = junctions.iter().map(Junction::area_ratio).collect();
-        other("area_ratio_median", "cross-sections after / before, median", median(&area_ratios), Some(1.14..=1.36));
+        other(
+            "area_ratio_median",
+            "cross-sections after / before, median",
+            median(&area_ratios),
+            Some(1.14..=1.36),
+        );
         other("nesting", "nesting number", nesting.map(|n| n.plain), Some(0.57..=0.70));
-        other("nesting_weighted", "nesting number, weighted", nesting.map(|n| n.weighted), Some(0.14..=0.58));
+        other(
+            "nesting_weighted",
+            "nesting number, weighted",
+            nesting.map(|n| n.weighted),
+            Some(0.14..=0.58),
+        );
         other("nesting_weighted_excess", "the same minus shuffled", weighted, None);
         Self {
             unit,

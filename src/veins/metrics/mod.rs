@@ -23,9 +23,9 @@ mod pattern;
 pub mod picture;
 pub mod rows;
 mod statistics;
+pub mod strahler;
 #[cfg(test)]
 mod tests;
-pub mod strahler;
 pub mod topology;
 
 pub use measures::Measures;

@@ -79,7 +79,12 @@ impl Network {
     /// Merges the nodes of degree 2 and drops those without a segment. Without an outline (fewer
     /// than 3 points) the blade is what [`hull::outline`] finds around the veins.
     #[must_use]
-    pub fn new(nodes: &[DVec2], segments: Vec<Segment>, roots: &[usize], outline: &[DVec2]) -> Self {
+    pub fn new(
+        nodes: &[DVec2],
+        segments: Vec<Segment>,
+        roots: &[usize],
+        outline: &[DVec2],
+    ) -> Self {
         let mut is_root = vec![false; nodes.len()];
         for &root in roots {
             is_root[root] = true;
@@ -286,9 +291,9 @@ fn joined(segments: &[Segment], pieces: &[HalfEdge]) -> Segment {
         by_order[usize::from(segment.order)] += segment.length;
     }
     let width = if length > 0.0 { area / length } else { plain / pieces.len() as f64 };
-    let order = (0..=255u8).rev().max_by(|&a, &b| {
-        by_order[usize::from(a)].total_cmp(&by_order[usize::from(b)])
-    });
+    let order = (0..=255u8)
+        .rev()
+        .max_by(|&a, &b| by_order[usize::from(a)].total_cmp(&by_order[usize::from(b)]));
     Segment { ends, path, length, width, order: order.unwrap_or(0) }
 }
 

@@ -55,6 +55,9 @@ mod tests {
 
     #[test]
     fn nothing_is_known_of_nothing() {
-        assert_eq!((mean(&[]), median(&[]), deviation(&[]), variation(&[])), (None, None, None, None));
+        assert_eq!(
+            (mean(&[]), median(&[]), deviation(&[]), variation(&[])),
+            (None, None, None, None)
+        );
     }
 }

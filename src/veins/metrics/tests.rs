@@ -110,9 +110,8 @@ fn tissue_in_squares_is_a_sixth_of_their_side_from_a_vein() {
 
 #[test]
 fn veins_side_by_side_leave_a_quarter_of_their_spacing() {
-    let nodes: Vec<DVec2> = (0..10)
-        .flat_map(|i| [0.0, 20.0].map(|y| DVec2::new(f64::from(i) + 0.5, y)))
-        .collect();
+    let nodes: Vec<DVec2> =
+        (0..10).flat_map(|i| [0.0, 20.0].map(|y| DVec2::new(f64::from(i) + 0.5, y))).collect();
     let edges: Vec<[usize; 2]> = (0..10).map(|i| [2 * i, 2 * i + 1]).collect();
     let outline = [(0.0, 0.0), (10.0, 0.0), (10.0, 20.0), (0.0, 20.0)].map(DVec2::from);
     let network = network(&nodes, &edges, &outline);
@@ -267,8 +266,7 @@ fn areoles_are_joins_less_roots_plus_parts() {
         assert_eq!(graph.check(), None);
         let roots = (0..graph.len() as u32).filter(|&n| graph.parent(n).is_none()).count();
         let mut part: Vec<usize> = (0..graph.len()).collect();
-        let edges: Vec<(u32, u32)> =
-            graph.edges().chain(graph.joins().iter().copied()).collect();
+        let edges: Vec<(u32, u32)> = graph.edges().chain(graph.joins().iter().copied()).collect();
         for _ in 0..graph.len() {
             for &(a, b) in &edges {
                 let least = part[a as usize].min(part[b as usize]);

@@ -146,7 +146,8 @@ impl Measures {
         let over = |times: f64| {
             let limit = times * median_width?;
             let wide = segments.iter().filter(|segment| segment.width > limit);
-            Some(wide.map(|segment| segment.length).sum::<f64>() / length)
+            // The sum turns the −0 of no lengths into 0.
+            Some(wide.map(|segment| segment.length).sum::<f64>() / length + 0.0)
         };
         let ratio = |a: f64, b: f64| (b > 0.0).then(|| a / b);
         let count = |n: usize| n as f64;

@@ -116,7 +116,8 @@ fn veins_side_by_side_leave_a_quarter_of_their_spacing() {
     let outline = [(0.0, 0.0), (10.0, 0.0), (10.0, 20.0), (0.0, 20.0)].map(DVec2::from);
     let network = network(&nodes, &edges, &outline);
     let distances = Distances::of(&network).unwrap();
-    assert!(close(distances.mean * network.length() / 200.0, 0.25, 0.002), "{distances:?}");
+    // Lines along the sides of pixels are the worst case of the grid.
+    assert!(close(distances.mean * network.length() / 200.0, 0.25, 0.003), "{distances:?}");
     assert_eq!(distances.inradius_mean, None);
 }
 

@@ -8,6 +8,7 @@
 
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +18,9 @@ use crate::geometry::scatter::PolygonScatter;
 use crate::growth::{GrowingBlade, GrowthError, GrowthSpec, GrowthType};
 use crate::margin::{Margin, MarginError};
 use crate::observer::Silent;
+use crate::point_list;
 use crate::seed::{Seed, Stage};
-use crate::veins::{self, Unreached, VeinError, VeinSpec};
+use crate::veins::{self, Unreached, VeinError, VeinGraph, VeinSpec};
 
 /// Sides of the polygon that stands for the ellipse.
 const SIDES: usize = 256;
@@ -51,6 +53,8 @@ pub struct Measure {
     pub steps: u64,
     /// Time of the growth alone, without widths (s, wall clock of one thread).
     pub seconds: f64,
+    /// Seconds of the processor, which a busy machine does not stretch.
+    pub cpu_seconds: f64,
     /// Sources that were not reached, by reason.
     pub unreached: Unreached,
 }
@@ -154,14 +158,8 @@ impl Workload {
             }
         }
         let margin = Margin::new(outline, apex, Vec::new(), "mend polygon there")?;
-        let mut places = Vec::new();
-        for (i, line) in sources.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let numbers: Vec<f64> = line.split(',').filter_map(|x| x.trim().parse().ok()).collect();
-            let [x, y] = numbers[..] else {
-                return Err(text(format!("sources, line {}: {line:?} is not `x,y`", i + 1)));
-            };
-            places.push([x * LENGTH_MM, y * LENGTH_MM]);
-        }
+        let places = point_list::parse(sources).map_err(|e| text(format!("sources, {e}")))?;
+        let places = places.iter().map(|p| p.map(|x| x * LENGTH_MM)).collect();
         let veins = VeinSpec {
             kill_distance_mm: read.kill * LENGTH_MM,
             node_step_mm: read.segment * LENGTH_MM,
@@ -196,23 +194,26 @@ fn measure(
     seed: Seed,
 ) -> Result<Measure, BenchmarkError> {
     let mut rng = seed.stream(Stage::AuxinSources);
-    let start = Instant::now();
-    let grown = veins::auxin::grow(spec, blade, &[root], &mut rng, &mut Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
+    let mut roots = VeinGraph::new();
+    roots.add_root(root);
+    let (wall, processor) = (Instant::now(), ThreadTime::now());
+    let grown = veins::auxin::grow(spec, blade, roots, &mut rng, &mut Silent)?;
+    let (seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),
         steps: grown.nodes_after_step.len() as u64,
         seconds,
+        cpu_seconds,
         unreached: grown.unreached,
     })
 }
 
-/// The slope of ln `seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
+/// The slope of ln `cpu_seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
 #[must_use]
 pub fn exponent(measures: &[Measure]) -> Option<f64> {
     let points: Vec<(f64, f64)> =
-        measures.iter().map(|m| (libm::log(m.sources as f64), libm::log(m.seconds))).collect();
+        measures.iter().map(|m| (libm::log(m.sources as f64), libm::log(m.cpu_seconds))).collect();
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
@@ -367,7 +368,8 @@ mod tests {
             sources: n,
             nodes: n,
             steps: 1,
-            seconds: (n * n) as f64,
+            seconds: 1.0,
+            cpu_seconds: (n * n) as f64,
             unreached: Unreached::default(),
         };
         let found = exponent(&[measure(10), measure(100), measure(1000)]).expect("three sizes");

@@ -7,6 +7,8 @@ use serde::Serialize;
 use venation::benchmark::{self, BenchmarkError, Measure, Workload};
 use venation::seed::Seed;
 
+use super::Failure;
+
 /// Time the growth of veins on a standard leaf, a workload of your own or the tables of Foster's
 /// report.
 #[derive(Debug, clap::Args)]
@@ -17,9 +19,10 @@ pub(crate) struct Args {
           default_values_t = [1000, 2000, 4000, 8000, 16_000, 32_000, 64_000],
           conflicts_with_all = ["workload", "suite"])]
     auxins: Vec<u32>,
-    /// Run a workload from FILE.json; its sources (lines `x,y`) are in FILE.csv beside it.
+    /// Run a workload from FILE.json; its sources (lines `x,y`) are in FILE.csv beside it. Given
+    /// several times, the exponent is fitted over them.
     #[arg(long, value_name = "FILE.json", conflicts_with = "suite")]
-    workload: Option<PathBuf>,
+    workload: Vec<PathBuf>,
     /// Run a suite: `foster`, every row of the five tables of the report.
     #[arg(long)]
     suite: Option<Suite>,
@@ -36,6 +39,9 @@ pub(crate) struct Args {
     /// Also write the measures to FILE as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Overwrite files of an earlier run.
+    #[arg(long)]
+    force: bool,
 }
 
 /// A set of runs with a name.
@@ -67,9 +73,6 @@ pub(crate) enum Error {
     /// A run failed.
     #[error(transparent)]
     Run(#[from] BenchmarkError),
-    /// Standard output is closed.
-    #[error(transparent)]
-    Output(#[from] std::io::Error),
 }
 
 /// One line of the results.
@@ -95,50 +98,52 @@ struct Results {
 }
 
 /// Runs the benchmark and prints its table to `out`.
-///
-/// # Errors
-///
-/// [`Error`] names the file and the problem.
-pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Error> {
+pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
+    super::refuse_existing(args.json.iter().chain(&args.csv), args.force)?;
     let mut results = Results { runs: args.runs, lines: Vec::new(), exponent: None };
-    let mut add = |out: &mut dyn Write, line: Line| -> Result<(), Error> {
+    let mut add = |out: &mut dyn Write, line: Line| -> Result<(), Failure> {
         print(out, &line)?;
         results.lines.push(line);
         Ok(())
     };
-    let head = ["", "auxins", "nodes", "steps", "seconds", "µs/node"];
+    let head = ["", "auxins", "nodes", "steps", "CPU s", "wall s"];
     writeln!(out, "{}  not reached", columns(head.map(String::from)))?;
     if let Some(Suite::Foster) = args.suite {
         let blade = benchmark::beech_like_blade();
         for row in benchmark::foster_suite() {
-            let measure = median(args.runs, || benchmark::run_foster(&row, &blade))?;
+            let measure =
+                median(args.runs, || benchmark::run_foster(&row, &blade)).map_err(Error::Run)?;
             let name = format!("{} {}", row.table, row.value);
             add(out, Line { name, printed_seconds: Some(row.printed_seconds), measure })?;
         }
-    } else if let Some(path) = &args.workload {
-        let workload = read(path)?;
-        let named = |source| Error::Workload { path: path.clone(), source };
-        let measure = median(args.runs, || benchmark::run(&workload)).map_err(named)?;
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        add(out, Line { name, printed_seconds: None, measure })?;
+    } else if !args.workload.is_empty() {
+        for path in &args.workload {
+            let workload = read(path)?;
+            let named = |source| Error::Workload { path: path.clone(), source };
+            let measure = median(args.runs, || benchmark::run(&workload)).map_err(named)?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            add(out, Line { name, printed_seconds: None, measure })?;
+        }
     } else {
         for &count in &args.auxins {
             let workload = benchmark::standard_workload(count as usize, Seed(args.seed));
-            let measure = median(args.runs, || benchmark::run(&workload))?;
+            let measure = median(args.runs, || benchmark::run(&workload)).map_err(Error::Run)?;
             add(out, Line { name: "standard".into(), printed_seconds: None, measure })?;
         }
+    }
+    if args.suite.is_none() {
         let measures: Vec<Measure> = results.lines.iter().map(|l| l.measure.clone()).collect();
         results.exponent = benchmark::exponent(&measures);
     }
     if let Some(exponent) = results.exponent {
-        writeln!(out, "time grows as auxins to the power {exponent:.2}")?;
+        writeln!(out, "fitted exponent of time against auxins: {exponent:.2}")?;
     }
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&results).expect("numbers and words") + "\n";
-        write(path, &text)?;
+        super::save(path, text.into_bytes())?;
     }
     if let Some(path) = &args.csv {
-        write(path, &csv(&results.lines))?;
+        super::save(path, csv(&results.lines).into_bytes())?;
     }
     Ok(())
 }
@@ -149,13 +154,13 @@ fn median(
     mut run: impl FnMut() -> Result<Measure, BenchmarkError>,
 ) -> Result<Measure, BenchmarkError> {
     let mut measures = (0..runs).map(|_| run()).collect::<Result<Vec<_>, _>>()?;
-    measures.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    measures.sort_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
     Ok(measures.swap_remove(measures.len() / 2))
 }
 
 fn columns(cells: [String; 6]) -> String {
-    let [name, sources, nodes, steps, seconds, per_node] = cells;
-    format!("{name:<28}{sources:>8}{nodes:>9}{steps:>7}{seconds:>10}{per_node:>9}")
+    let [name, sources, nodes, steps, cpu, wall] = cells;
+    format!("{name:<28}{sources:>8}{nodes:>9}{steps:>7}{cpu:>10}{wall:>10}")
 }
 
 fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
@@ -165,8 +170,8 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
         m.sources.to_string(),
         m.nodes.to_string(),
         m.steps.to_string(),
+        format!("{:.4}", m.cpu_seconds),
         format!("{:.4}", m.seconds),
-        format!("{:.2}", 1e6 * m.seconds / m.nodes as f64),
     ];
     let report = match line.printed_seconds {
         Some(seconds) if seconds >= benchmark::FOSTER_GAVE_UP => {
@@ -180,16 +185,17 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
 
 fn csv(lines: &[Line]) -> String {
     let mut text = String::from(
-        "name,printed_seconds,auxins,nodes,steps,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
+        "name,printed_seconds,auxins,nodes,steps,cpu_seconds,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
     );
     for Line { name, printed_seconds, measure: m } in lines {
         let printed = printed_seconds.map_or(String::new(), |seconds| seconds.to_string());
         let left = &m.unreached;
         text += &format!(
-            "{name},{printed},{},{},{},{},{},{},{},{},{}\n",
+            "{name},{printed},{},{},{},{},{},{},{},{},{},{}\n",
             m.sources,
             m.nodes,
             m.steps,
+            m.cpu_seconds,
             m.seconds,
             left.outside,
             left.too_young,
@@ -208,8 +214,4 @@ fn read(path: &Path) -> Result<Workload, Error> {
     };
     let named = |source| Error::Workload { path: path.to_path_buf(), source };
     Workload::parse(&text(path)?, &text(&path.with_extension("csv"))?).map_err(named)
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Error> {
-    std::fs::write(path, text).map_err(|source| Error::File { path: path.to_path_buf(), source })
 }

@@ -13,8 +13,10 @@ mod progress;
 mod seeds;
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
+use venation::io::write::{Overwrite, write_files};
 
 /// Why a command stopped.
 #[derive(Debug)]
@@ -68,10 +70,7 @@ impl From<venation::error::Error> for Failure {
 
 impl From<bench::Error> for Failure {
     fn from(error: bench::Error) -> Self {
-        match error {
-            bench::Error::Output(error) => error.into(),
-            error => Self::Input(error.to_string()),
-        }
+        Self::Input(error.to_string())
     }
 }
 
@@ -132,7 +131,7 @@ struct Cli {
 enum Command {
     /// Make leaves: textures, a card, outlines and graphs.
     Generate(Box<generate::Args>),
-    /// Growth types side by side, as one labelled picture.
+    /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
     Inspect(inspect::Args),
@@ -161,9 +160,31 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
-        Command::Bench(args) => Ok(bench::run(args, context.stdout)?),
+        Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),
     }
+}
+
+/// Refuses when a file that would be written is there already, unless forced.
+fn refuse_existing<'a>(
+    paths: impl IntoIterator<Item = &'a PathBuf>,
+    force: bool,
+) -> Result<(), Failure> {
+    match paths.into_iter().find(|path| !force && path.exists()) {
+        Some(path) => {
+            let problem = format!("{}: exists already; --force overwrites", path.display());
+            Err(Failure::Exists(problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Writes one file, whole or not at all.
+fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    write_files(folder, &[(name, bytes)], Overwrite::Force)
+        .map_err(|error| Failure::Input(error.to_string()))
 }
 
 /// clap's message in one line: what is wrong and its tip, without usage.

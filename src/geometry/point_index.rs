@@ -36,34 +36,22 @@ impl PointIndex {
         Self { tree: Some(tree.expect("finite points can always be split into leaves")) }
     }
 
-    /// Calls `visit` with every point within `radius` of `p`, bounds included, in no order; points a
-    /// rounding error outside may come too.
-    pub fn for_each_within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(u32)) {
+    /// Calls `visit` with every point within `radius` of `p`, bounds included, in no order, and its
+    /// squared distance up to rounding; points a rounding error outside may come too.
+    pub fn for_each_within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(u32, f64)) {
         let Some(tree) = &self.tree else { return };
         let radius2 = radius * radius * (1.0 + 1e-12);
         tree.query(&p.to_array())
             .within::<SquaredEuclidean<f64>>(radius2)
             .unsorted()
-            .visit(|hit| visit(hit.item));
+            .visit(|hit| visit(hit.item, hit.distance));
     }
 
-    /// The point nearest to `p` within a squared distance of `limit2`; the first of the slice among
-    /// equals.
+    /// The squared distance from `p` to the nearest point; infinite when there is none.
     #[must_use]
-    pub fn nearest_within(&self, p: DVec2, limit2: f64) -> Option<u32> {
-        let query = p.to_array();
-        let tree = self.tree.as_ref()?;
-        let nearest = tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
-        if nearest.distance > limit2 * (1.0 + 1e-12) {
-            return None;
-        }
-        // Which of several equals the tree finds depends on its layout.
-        let mut first = nearest.item;
-        tree.query(&query)
-            .within::<SquaredEuclidean<f64>>(nearest.distance)
-            .unsorted()
-            .visit(|hit| first = first.min(hit.item));
-        Some(first)
+    pub fn nearest_distance2(&self, p: DVec2) -> f64 {
+        let Some(tree) = &self.tree else { return f64::INFINITY };
+        tree.query(&p.to_array()).nearest_one::<SquaredEuclidean<f64>>().execute().distance
     }
 }
 
@@ -82,22 +70,20 @@ mod tests {
         for _ in 0..300 {
             let p = DVec2::new(rng.between(-0.2, 1.2), rng.between(-0.2, 1.2));
             let mut found = Vec::new();
-            index.for_each_within(p, 0.2, |i| found.push(i));
+            index.for_each_within(p, 0.2, |i, _| found.push(i));
             found.sort_unstable();
             let within = |i: &u32| points[*i as usize].distance(p) <= 0.2;
             assert_eq!(found, (0..points.len() as u32).filter(within).collect::<Vec<_>>());
             let nearest =
                 points.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
-            let found = index.nearest_within(p, 10.0).expect("some");
-            assert!((points[found as usize].distance_squared(p) - nearest).abs() < 1e-15);
-            assert_eq!(index.nearest_within(p, nearest * 0.99), None);
+            assert!((index.nearest_distance2(p) - nearest).abs() < 1e-15);
         }
     }
 
     #[test]
-    fn the_first_among_equals_is_nearest() {
-        let points = [DVec2::X, DVec2::NEG_X, DVec2::Y];
-        assert_eq!(PointIndex::new(&points).nearest_within(DVec2::ZERO, 2.0), Some(0));
-        assert_eq!(PointIndex::new(&[]).nearest_within(DVec2::ZERO, 2.0), None);
+    fn nothing_is_found_among_no_points() {
+        let index = PointIndex::new(&[]);
+        index.for_each_within(DVec2::ZERO, 1e9, |_, _| panic!("found one"));
+        assert_eq!(index.nearest_distance2(DVec2::ZERO), f64::INFINITY);
     }
 }

@@ -162,6 +162,15 @@ fn from_picture(
     };
     let root = options.root.map(|root| DVec2::from(root) / picture.file_pixels);
     let mut traced = trace(kind, &picture, root)?;
+    if kind == OutlineKind::Photo && options.kind == OutlineKind::Auto && is_a_line(&traced.outline)
+    {
+        // A drawing that does not close. Given a root, the rule for sketches says where it leaks.
+        let _ = trace(OutlineKind::Sketch, &picture, root)?;
+        return Err(OutlineProblem::content(
+            "shows thin lines that enclose no blade; if it is a drawing, close its outline (a root \
+             inside tells where it is open)",
+        ));
+    }
     notes.append(&mut traced.notes);
     traced.notes = notes;
     Ok(Found2d { traced, kind, unit: picture.file_pixels, y_down: true })
@@ -172,6 +181,14 @@ fn trace(kind: OutlineKind, picture: &Picture, root: Option<DVec2>) -> Result<Tr
         OutlineKind::Sketch => sketch::trace(picture, root),
         _ => silhouette::trace(picture, root),
     }
+}
+
+/// Whether an outline surrounds a drawn line and no blade: even blades of grass are wider.
+fn is_a_line(outline: &[DVec2]) -> bool {
+    const LEAST_WIDTH: f64 = 0.01;
+    let extent = Rect::around(outline.iter().copied()).size().max_element();
+    let width = 2.0 * polygon::signed_area(outline).abs() / polygon::perimeter(outline);
+    width < LEAST_WIDTH * extent
 }
 
 fn from_text(
@@ -287,7 +304,6 @@ fn place(found: Found2d, options: &OutlineOptions) -> Result<ImportedOutline, Ou
     let cuts: Vec<Vec<DVec2>> =
         traced.cuts.iter().map(|line| line.iter().map(|&p| p * up).collect()).collect();
     let root = options.root.map(|root| DVec2::from(root) * up / unit);
-    // A root in a sketch marks the blade by lying in it: only its nearest margin is the base.
     let placed =
         placement::place(&outline, &cuts, root, options.length_mm).map_err(|error| {
             match (error, options.root) {
@@ -321,7 +337,8 @@ fn attachment_note(placed: &Placed, base: DVec2, kind: OutlineKind) -> String {
     let how = match placed.found {
         Found::Given => "petiole attachment as given",
         Found::Stalk => "petiole cut off; attachment",
-        Found::Notch => "petiole attachment found in the notch of the base",
+        Found::Nub => "petiole attachment found where the base sticks out,",
+        Found::Notch => "petiole attachment found in the notch of the base,",
         Found::End => "no petiole: attachment assumed",
     };
     match kind {

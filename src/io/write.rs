@@ -91,6 +91,13 @@ impl Staged {
     }
 
     fn rename(mut self) -> Result<(), Error> {
+        // The last file vouches for the others: an old one must not vouch for half a new set.
+        if let [.., _, (_, seal)] = &self.files[..]
+            && let Err(source) = fs::remove_file(seal)
+            && source.kind() != ErrorKind::NotFound
+        {
+            return Err(Error::write(seal, source));
+        }
         let mut folders: Vec<PathBuf> = Vec::new();
         for (temporary, path) in &self.files {
             fs::rename(temporary, path).map_err(|source| Error::write(path, source))?;

@@ -20,6 +20,8 @@ pub enum Found {
     Given,
     /// A thin stalk, cut off here.
     Stalk,
+    /// The rest of a petiole too short to cut off.
+    Nub,
     /// A notch in the base.
     Notch,
     /// The end of the blade that looks most like a base.

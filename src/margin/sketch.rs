@@ -5,8 +5,8 @@
 //! where it meets the ink is the margin. Lines drawn inside the blade are slits: a slit that starts
 //! at the margin is taken out of the outline and kept as a line like the others.
 //!
-//! Source: Foster, flood-filled margins (2006). Departs from it: the margin is a polygon to
-//! sub-pixel accuracy instead of the filled pixels.
+//! Departs from Foster's flood fill: the margin is a polygon to sub-pixel accuracy, not the filled
+//! pixels.
 //!
 //! Coordinates are pixels of the picture, y down.
 

@@ -28,10 +28,10 @@ pub fn gaussian(field: &Grid<f32>, sigma: f64) -> Grid<f32> {
         for (value, middle) in out.iter_mut().zip(rows.row(y)) {
             *value = middle * weights[0];
         }
-        for k in 1..=reach {
+        for (k, weight) in weights.iter().enumerate().skip(1) {
             let (above, below) = (rows.row(y.saturating_sub(k)), rows.row((y + k).min(height - 1)));
             for (value, (a, b)) in out.iter_mut().zip(above.iter().zip(below)) {
-                *value += (a + b) * weights[k];
+                *value += (a + b) * weight;
             }
         }
     }

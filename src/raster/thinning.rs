@@ -159,9 +159,9 @@ fn is_removable(code: usize, pass: usize) -> bool {
     let rises = (0..8).filter(|&k| !p[k] && p[(k + 1) % 8]).count();
     let [above, _, right, _, below, _, left, _] = p;
     let sides = if pass == 0 {
-        !(above && right && below) && !(right && below && left)
+        !(right && below && (above || left))
     } else {
-        !(above && right && left) && !(above && below && left)
+        !(above && left && (right || below))
     };
     (2..=6).contains(&count) && rises == 1 && sides
 }

@@ -2,7 +2,7 @@
 //!
 //! Veins are drawn at full resolution, band by band, from tapered capsules, each within its own
 //! box. What varies slowly (distance to the margin, to the larger veins, the reach of the colour
-//! schemes, broad mottling) is computed on a coarser [`Guide`] and read in between.
+//! schemes, broad mottling) is computed on a coarser guide ([`super::guide`]) and read in between.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
-pub(super) use super::guide::{Guide, Place};
+pub(super) use super::guide::Place;
 
 /// Half the window through which a texel sees a vein (px). At 0.5 a slanted vein finer than a
 /// texel falls into dashes; at 1 everything is soft.
@@ -97,31 +97,36 @@ impl Strokes {
     }
 }
 
-/// The radii of all nodes, widened along the midrib towards the petiole.
-fn necked(venation: &Venation, neck: f64) -> Vec<f64> {
+/// The nodes of the midrib, from the petiole: at each fork the widest child. Of several roots the
+/// first.
+pub(super) fn midrib(venation: &Venation) -> Vec<u32> {
     let graph = venation.graph();
-    let mut radii = venation.radii().to_vec();
-    // The widest child of each node carries the midrib on.
+    let radius = |node: u32| venation.radii()[node as usize];
     let mut widest: Vec<Option<u32>> = vec![None; graph.len()];
     for (parent, child) in graph.edges() {
         let slot = &mut widest[parent as usize];
-        if slot.is_none_or(|other| radii[child as usize] > radii[other as usize]) {
+        if slot.is_none_or(|other| radius(child) > radius(other)) {
             *slot = Some(child);
         }
     }
+    let root = (!graph.is_empty()).then_some(0);
+    std::iter::successors(root, |&node| widest[node as usize]).collect()
+}
+
+/// The radii of all nodes, widened along the midrib towards the petiole.
+fn necked(venation: &Venation, neck: f64) -> Vec<f64> {
+    let mut radii = venation.radii().to_vec();
+    let at = |node: u32| venation.graph().positions()[node as usize];
     let reach = NECK_RADII * neck;
-    let roots = (0..graph.len() as u32).filter(|&node| graph.parent(node).is_none());
-    for root in roots {
-        let (mut node, mut walked) = (root, 0.0);
-        while walked < reach {
-            let own = &mut radii[node as usize];
-            let share = 1.0 - walked / reach;
-            *own += (neck - *own).max(0.0) * share * share;
-            let Some(next) = widest[node as usize] else { break };
-            let at = |node: u32| graph.positions()[node as usize];
-            walked += at(node).distance(at(next));
-            node = next;
+    let (mut walked, mut last) = (0.0, None);
+    for node in midrib(venation) {
+        walked += last.map_or(0.0, |last| at(last).distance(at(node)));
+        if walked >= reach {
+            break;
         }
+        let own = &mut radii[node as usize];
+        *own += (neck - *own).max(0.0) * (1.0 - walked / reach).powi(2);
+        last = Some(node);
     }
     radii
 }

@@ -1,8 +1,10 @@
 //! The slowly varying fields of a leaf on a coarse grid, read by interpolation.
 //!
-//! Distances are exact at the nodes: the nearest node that a line passes comes from the distance
-//! transform, the rest from that line itself. Between the nodes they are linear, which a distance
-//! is everywhere but at the ridges.
+//! Distances: the distance transform says which node's cell holds the nearest line, and the distance
+//! is measured to that line itself. The cell is known by its centre only, so where two stretches are
+//! about equally far the wrong one may be taken, and between the nodes a ridge is cut off. On a lobed
+//! outline the error stayed below 0.07 node spacings (a seventh of a texel) near the margin and below
+//! 0.36 deep inside, where nothing sharp depends on it; a test holds both.
 
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
@@ -329,4 +331,47 @@ fn coarse_edges(venation: &Venation, spread: f64) -> Vec<(u32, u32)> {
     }
     edges.extend(graph.joins());
     edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::segments::SegmentIndex;
+    use crate::veins::VeinGraph;
+
+    #[test]
+    fn distances_to_the_margin_are_near_those_of_a_full_search() {
+        let corner = |i: usize| {
+            let angle = std::f64::consts::TAU * (i as f64 - 24.0) / 96.0;
+            let r = 30.0 * (1.0 + 0.15 * libm::cos(6.0 * angle));
+            DVec2::new(r * libm::cos(angle), r * libm::sin(angle) + 25.5)
+        };
+        let mut outline: Vec<DVec2> = (0..96).map(corner).collect();
+        let apex = 48;
+        (outline[0], outline[apex].x) = (DVec2::ZERO, 0.0);
+        let margin = Margin::new(outline, apex, Vec::new(), "").expect("a margin");
+        let bounds = margin.bounds();
+        let frame = TextureFrame::around(bounds.min, bounds.max, 0.05);
+        let bare = Venation::new(VeinGraph::new(), Vec::new(), Vec::new());
+        let reach = Reach { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
+        let size = 200;
+        let spacing = frame.side_mm / Guide::side_for(size) as f64;
+        let guide = Guide::new(&margin, &bare, &frame, size, &reach, 1);
+        let edges = SegmentIndex::of_polygon(margin.outline());
+        for y in 0..size {
+            let row = guide.row(y);
+            for x in 0..size {
+                let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let p = frame.leaf_from_pixel(centre, size);
+                let distance = edges.nearest(p, 1000.0).expect("an edge").0.sqrt();
+                let expected = if edges.contains(p) { distance } else { -distance };
+                if expected < -3.0 {
+                    continue; // Far outside nobody asks; at the frame the guide is constant.
+                }
+                let found = f64::from(row.at(x).edge);
+                let limit = if expected < 4.0 { 0.1 } else { 0.5 } * spacing;
+                assert!((found - expected).abs() < limit, "{p}: {found} {expected}");
+            }
+        }
+    }
 }

@@ -11,6 +11,7 @@ pub mod petiole;
 pub mod pigment;
 pub mod relief;
 mod scene;
+mod texel;
 mod tissue;
 
 use crate::margin::Margin;

@@ -31,13 +31,18 @@ parameters! {
 /// Straight pieces of the stalk: at 80° of bend they turn by 2° each, which no eye finds.
 const PIECES: usize = 40;
 
-/// A stalk in leaf space: points from the base of the blade to the stem, with radii (mm).
+/// A stalk in leaf space: points from the midrib over the base to the stem, with radii (mm).
 #[derive(Debug, Clone)]
 pub(super) struct Stalk {
     points: Vec<DVec2>,
     radii: Vec<f64>,
-    length: f64,
+    /// Distance of each point from the blade along the stalk (mm), negative above the base.
+    along: Vec<f64>,
 }
+
+/// The stalk runs on along the midrib over so many of its radii, thinning: a blade that narrows to
+/// a point would else stand on it with a notch.
+const ROOT_RADII: f64 = 7.0;
 
 /// What the stalk is at one texel.
 #[derive(Debug, Clone, Copy, Default)]
@@ -53,31 +58,56 @@ pub(super) struct StalkAt {
 }
 
 impl Stalk {
-    /// The stalk of a leaf whose midrib starts with `midrib_radius` (mm).
-    pub(super) fn new(spec: &PetioleSpec, midrib_radius: f64) -> Self {
+    /// The stalk of a leaf whose midrib runs from the base along `midrib` and has `neck` as its
+    /// radius there (mm).
+    pub(super) fn new(spec: &PetioleSpec, neck: f64, midrib: &[DVec2]) -> Self {
         let length = spec.length_mm;
         if length <= 0.0 {
-            return Self { points: vec![DVec2::ZERO], radii: vec![0.0], length };
+            return Self { points: vec![DVec2::ZERO], radii: vec![0.0], along: vec![0.0] };
         }
+        let (mut points, mut radii, mut along) = Self::root(neck, midrib);
         let stem_radius = 0.5 * spec.width_mm;
         // A circular arc that leaves the blade along the midrib.
         let turn = Angle::from_degrees(spec.bend_deg / PIECES as f64);
         let step = length / PIECES as f64;
         let mut direction = DVec2::NEG_Y;
-        let (mut points, mut radii) = (vec![DVec2::ZERO], Vec::new());
+        let mut point = DVec2::ZERO;
         for i in 0..=PIECES {
             let t = i as f32 / PIECES as f32;
             // Most of the widening right below the blade, then a slow taper.
             let widening = f64::from(0.6 * smooth(0.0, 0.55, t) + 0.4 * t);
             // The cushion by which it sits on the stem.
-            let cushion = 1.0 + 0.18 * f64::from(smooth(0.88, 1.0, t));
-            radii.push((midrib_radius + (stem_radius - midrib_radius) * widening) * cushion);
-            if i < PIECES {
-                direction = DVec2::new(turn.cos(), turn.sin()).rotate(direction);
-                points.push(points[i] + direction * step);
+            let cushion = 1.0 + 0.12 * f64::from(smooth(0.88, 1.0, t));
+            points.push(point);
+            radii.push((neck + (stem_radius - neck) * widening) * cushion);
+            along.push(step * i as f64);
+            direction = DVec2::new(turn.cos(), turn.sin()).rotate(direction);
+            point += direction * step;
+        }
+        Self { points, radii, along }
+    }
+
+    /// The part along the midrib, from its thin end down to the base, which is not in it.
+    fn root(neck: f64, midrib: &[DVec2]) -> (Vec<DVec2>, Vec<f64>, Vec<f64>) {
+        let reach = ROOT_RADII * neck;
+        let (mut points, mut radii, mut along) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut last, mut walked) = (DVec2::ZERO, 0.0);
+        for &p in midrib {
+            walked += last.distance(p);
+            last = p;
+            if walked >= reach {
+                break;
+            }
+            if walked > 0.0 {
+                points.push(p);
+                radii.push(neck * (1.0 - 0.8 * walked / reach));
+                along.push(-walked);
             }
         }
-        Self { points, radii, length }
+        points.reverse();
+        radii.reverse();
+        along.reverse();
+        (points, radii, along)
     }
 
     /// The far end of its axis (mm).
@@ -109,7 +139,6 @@ impl Stalk {
     ) -> Option<Vec<StalkAt>> {
         let per_mm = frame.pixels_per_mm(size);
         let mm = 1.0 / per_mm as f32;
-        let piece = (self.length / PIECES as f64) as f32;
         let mut texels = None;
         for i in 1..self.points.len() {
             let capsule = Capsule {
@@ -118,6 +147,7 @@ impl Stalk {
                 radius_a: (self.radii[i - 1] * per_mm) as f32,
                 radius_b: (self.radii[i] * per_mm) as f32,
             };
+            let (from, to) = (self.along[i - 1] as f32, self.along[i] as f32);
             let [columns, lines] = capsule.pixels(capsule.widest() + 0.5, size, rows.clone());
             for y in lines {
                 let texels =
@@ -129,10 +159,12 @@ impl Stalk {
                     let cover = stroke_share(distance2.sqrt(), radius, 0.5);
                     let texel = &mut texels[(y - rows.start) * size + x];
                     let dome = (radius * radius - distance2).max(0.0).sqrt() * mm;
-                    if cover > texel.cover || (cover == texel.cover && dome > texel.dome) {
-                        let along = (i as f32 - 1.0 + t) * piece;
-                        *texel = StalkAt { cover, along, radius: radius * mm, dome };
+                    // Neighbouring pieces overlap; the one that is highest here is the nearest.
+                    if dome > texel.dome || (texel.dome == 0.0 && cover > texel.cover) {
+                        texel.along = from + (to - from) * t;
+                        (texel.radius, texel.dome) = (radius * mm, dome);
                     }
+                    texel.cover = texel.cover.max(cover);
                 }
             }
         }
@@ -147,17 +179,18 @@ mod tests {
     #[test]
     fn the_bend_is_the_angle_between_the_ends() {
         let spec = PetioleSpec { bend_deg: 80.0, ..PetioleSpec::default() };
-        let stalk = Stalk::new(&spec, 0.4);
-        let last = stalk.points[PIECES] - stalk.points[PIECES - 1];
+        let stalk = Stalk::new(&spec, 0.4, &[DVec2::ZERO, DVec2::new(0.1, 1.0), DVec2::Y * 9.0]);
+        assert_eq!(stalk.along[..2], [-DVec2::new(0.1, 1.0).length(), 0.0]);
+        let last = stalk.points[PIECES + 1] - stalk.points[PIECES];
         assert!((last.angle_to(DVec2::NEG_Y).abs().to_degrees() - 80.0).abs() < 1e-6);
         assert!(stalk.end().x > 0.0 && stalk.end().y < 0.0);
-        assert!((stalk.radii[0] - 0.4).abs() < 1e-12);
+        assert!((stalk.radii[1] - 0.4).abs() < 1e-12);
     }
 
     #[test]
     fn a_sessile_leaf_has_none() {
         let spec = PetioleSpec { length_mm: 0.0, ..PetioleSpec::default() };
-        let stalk = Stalk::new(&spec, 0.4);
+        let stalk = Stalk::new(&spec, 0.4, &[]);
         assert_eq!((stalk.end(), stalk.widest()), (DVec2::ZERO, 0.0));
     }
 }

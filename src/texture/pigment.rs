@@ -239,7 +239,7 @@ impl Pigments {
     pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Tint {
         let round = stalk.dome / stalk.radius.max(1e-6);
         let blade = 1.0 - smooth(0.0, 2.0 * self.petiole_reach, stalk.along);
-        let stem = smooth(0.80, 1.0, stalk.along / length.max(1e-6));
+        let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));
         let mut tint = self.petiole.towards(self.vein, 0.5 * blade);
         tint.hue -= 18.0 * stem;
         tint.value *=

@@ -284,3 +284,38 @@ fn bench_prints_a_table_and_the_exponent() {
     let table = std::fs::read_to_string(folder.path().join("b.csv")).unwrap();
     assert_eq!(table.lines().count(), 4, "{table}");
 }
+
+#[test]
+fn a_killed_run_leaves_whole_files_and_goes_on_where_it_stopped() {
+    let folder = fresh();
+    let arguments = small(&["generate", "beech", "--seeds", "1-60", "-t", "1"]);
+    let killed = [&arguments[..], &["-o", "killed", "--skip-existing"]].concat();
+    let program = assert_cmd::cargo::cargo_bin("venation");
+    let mut child = std::process::Command::new(program)
+        .current_dir(folder.path())
+        .args(&killed)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    // Wait until some leaf is being written, then pull the plug.
+    let out = folder.path().join("killed");
+    while child.try_wait().unwrap().is_none() && !out.exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for (name, bytes) in contents(&out) {
+        if name.extension().is_some_and(|e| e == "png") {
+            assert!(bytes.ends_with(b"IEND\xaeB`\x82"), "{} is cut off", name.display());
+        }
+    }
+    succeed(folder.path(), &killed);
+    succeed(folder.path(), &[&arguments[..], &["-o", "whole"]].concat());
+    let finished = |name: &str| {
+        let mut files = contents(&folder.path().join(name));
+        // What the killed run was in the middle of writing keeps its temporary name.
+        files.retain(|path, _| !path.to_string_lossy().contains(".venation"));
+        files
+    };
+    assert!(finished("killed") == finished("whole"));
+}

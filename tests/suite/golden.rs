@@ -164,3 +164,51 @@ fn golden_relief_of_both_sides() {
     ];
     compare("readme_relief", &sheet("relief", &panels, 4, 384));
 }
+
+#[test]
+fn golden_leaf_in_a_real_outline() {
+    let leaf = leaf(&in_outline("lilac", "Passiflora_alata_1_8.png", &[]), 1, 768);
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines");
+    let scan = read(&fixtures.join("Passiflora_alata_1_8.png")).expect("the fixture");
+    let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let panels = [
+        panel(scan, "given: a scanned outline"),
+        panel(front.base_colour.clone(), "front"),
+        panel(back.base_colour.clone(), "back"),
+        panel(normals(front), "front, normal"),
+    ];
+    compare("readme_scan", &sheet("", &panels, 4, 448));
+}
+
+#[test]
+fn golden_leaves_in_outlines_from_files() {
+    let files = [
+        ("beech", "Passiflora_capsularis_1_7.png", "photograph"),
+        ("beech", "Passiflora_setacea_1_10.png", "photograph"),
+        ("lilac", "Passiflora_villosa_1_6.png", "photograph"),
+        ("linden", "Passiflora_edulis_3_2.csv", "CSV"),
+        ("willow", "openclipart_leaf_01.svg", "SVG"),
+        ("beech", "sketch.png", "drawing"),
+    ];
+    let panels: Vec<Panel> = files
+        .iter()
+        .map(|(preset, file, label)| {
+            let leaf = leaf(&in_outline(preset, file, &[]), 1, 512);
+            panel(leaf.textures.front.base_colour, label)
+        })
+        .collect();
+    compare("readme_outlines", &sheet("outlines from files", &panels, 6, 320));
+}
+
+#[test]
+fn golden_growth_types() {
+    let panels: Vec<Panel> = venation::growth::GrowthType::ALL
+        .iter()
+        .map(|growth| {
+            let settings = [&format!("growth.type={growth}")[..], "growth.start_step=200"];
+            let leaf = leaf(&document("lilac", &settings), 1, 512);
+            panel(leaf.textures.back.base_colour, growth.word())
+        })
+        .collect();
+    compare("readme_growth", &sheet("growth types, seen from below", &panels, 4, 384));
+}

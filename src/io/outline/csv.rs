@@ -1,62 +1,25 @@
 //! A polygon as text: one point a line, two numbers a point.
 //!
-//! Numbers stand apart by a comma, a semicolon, a tab or spaces. A first line without numbers is a
-//! heading; empty lines and lines that start with `#` are skipped; further columns are ignored.
+//! What separates numbers and lines is [`point_list`]'s affair.
 
 use glam::DVec2;
 
 use super::OutlineProblem;
+use crate::point_list;
 
 /// More points than this are no outline that a hand or a camera made.
 const MOST_POINTS: usize = 500_000;
-/// Coordinates beyond this lose their sub-pixel digits in the arithmetic that follows.
-const MOST_COORDINATE: f64 = 1e15;
 
 /// The polygon and what was dropped from it.
 pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlineProblem> {
-    let mut points: Vec<DVec2> = Vec::new();
-    let (mut repeated, mut heading_seen) = (0, false);
-    for (number, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let problem =
-            |what: String| Err(OutlineProblem::Content(format!("line {}: {what}", number + 1)));
-        let fields = fields(line);
-        let numbers: Vec<Option<f64>> =
-            fields.iter().take(2).map(|field| field.parse().ok()).collect();
-        let [x, y] = match numbers[..] {
-            [Some(x), Some(y)] => [x, y],
-            // A heading has no number in it at all.
-            _ if points.is_empty() && !heading_seen && numbers.iter().all(Option::is_none) => {
-                heading_seen = true;
-                continue;
-            }
-            [_] => {
-                return problem(format!("\"{}\" is one column; a point has x and y", short(line)));
-            }
-            _ => return problem(format!("\"{}\" is not a pair of numbers", short(line))),
-        };
-        if !(x.is_finite() && y.is_finite()) {
-            return problem(format!("\"{}\" is not a pair of finite numbers", short(line)));
-        }
-        if x.abs().max(y.abs()) > MOST_COORDINATE {
-            return problem(format!(
-                "\"{}\" is beyond {MOST_COORDINATE:e}; use a smaller unit",
-                short(line)
-            ));
-        }
-        let point = DVec2::new(x, y);
-        if points.last() == Some(&point) {
-            repeated += 1;
-            continue;
-        }
-        if points.len() == MOST_POINTS {
-            return problem(format!("more than {MOST_POINTS} points; simplify the outline"));
-        }
-        points.push(point);
+    let given = point_list::parse(text).map_err(OutlineProblem::Content)?;
+    if given.len() > MOST_POINTS {
+        let problem = format!("has more than {MOST_POINTS} points; simplify the outline");
+        return Err(OutlineProblem::Content(problem));
     }
+    let mut points: Vec<DVec2> = given.iter().map(|p| DVec2::from(*p)).collect();
+    points.dedup();
+    let repeated = given.len() - points.len();
     while points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
@@ -71,19 +34,6 @@ pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlinePr
         notes.push(format!("{repeated} repeated points dropped"));
     }
     Ok((points, notes))
-}
-
-/// The columns of a line, by the strongest separator in it.
-fn fields(line: &str) -> Vec<&str> {
-    match [';', '\t', ','].into_iter().find(|&separator| line.contains(separator)) {
-        Some(separator) => line.split(separator).map(|f| f.trim().trim_matches('"')).collect(),
-        None => line.split_whitespace().collect(),
-    }
-}
-
-/// At most the first 40 characters, control characters masked.
-fn short(line: &str) -> String {
-    line.chars().take(40).map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
 #[cfg(test)]

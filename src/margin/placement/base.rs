@@ -49,7 +49,7 @@ mod weight {
     pub(super) const PETIOLE: f64 = 2.5;
     pub(super) const STALK: f64 = 2.0;
     /// A petiole cut off at its own width still says more than the rest.
-    pub(super) const STUB: f64 = 0.5;
+    pub(super) const STUB: f64 = 0.9;
     pub(super) const NOTCH: f64 = 0.5;
     pub(super) const SYMMETRY: f64 = 7.0;
     pub(super) const SHARP_TIP: f64 = 0.6;
@@ -58,16 +58,19 @@ mod weight {
     pub(super) const LONG: f64 = 0.2;
 }
 
-/// The tip is looked for this far to both sides of the line from the base through the centre (deg);
-/// beyond the second angle it may be one of two lobes.
-const TIP_WITHIN_DEG: (f64, f64) = (25.0, 10.0);
+/// Angles to both sides of the line from the base through the centre (deg): within the first lie
+/// lobes that belong together, within the second the tip; beyond the third it may be a lobe.
+const TIP_WITHIN_DEG: [f64; 3] = [40.0, 25.0, 10.0];
 
 /// A base this near to a stalk, as a share of the root of the area, is at the stalk.
-const BESIDE: f64 = 0.08;
+const BESIDE: f64 = 0.1;
+
+/// An end of the blade with a smaller angle than this is pointed (deg).
+const POINTED_DEG: f64 = 125.0;
 
 /// What a stalk adds to the sum for its attachment.
 fn worth(stalk: &Stalk) -> f64 {
-    let long = ((stalk.slenderness - 1.0) / 2.0).clamp(0.0, 1.0);
+    let long = (stalk.slenderness - 1.0).clamp(0.0, 1.0);
     let very_long = ((stalk.slenderness - 4.0) / 4.0).clamp(0.0, 1.0);
     // A drip tip may pass for a stalk, but it widens towards the blade and flares little.
     let flare = ((stalk.flare - 1.2) / 1.2).clamp(0.3, 1.0);
@@ -95,15 +98,27 @@ impl<'a> Shape<'a> {
         for &stalk in &self.stalks {
             offer(self.score(stalk.attachment) + worth(&stalk), Base::on(stalk));
         }
-        for (at, depth) in self.notches() {
-            let worth = weight::NOTCH * (depth / (0.08 * self.size)).min(1.0);
-            offer(self.score(at) + worth, Base { at, found: Found::Notch, stalk: None });
+        for (at, notch) in self.notches() {
+            offer(
+                self.score(at) + weight::NOTCH * notch,
+                Base { at, found: Found::Notch, stalk: None },
+            );
         }
         for direction in directions() {
             let at = self.exit(self.centre, direction);
             offer(self.score(at), Base { at, found: Found::End, stalk: None });
         }
         let (_, mut base) = best.expect("every direction leaves the leaf somewhere");
+        if base.found == Found::End {
+            // Directions are coarse. Opposite the tip is finer, and a pointed end finer still.
+            let tip = self.tip(base.at);
+            let across = self.tip(tip);
+            base.at = if self.angle_deg(across) < POINTED_DEG {
+                across
+            } else {
+                self.exit(self.centre, (self.centre - tip).normalize_or(DVec2::NEG_Y))
+            };
+        }
         // Whatever was found beside a stalk means the stalk.
         let near = |stalk: &&Stalk| stalk.attachment.distance(base.at) < BESIDE * self.size;
         if base.stalk.is_none()
@@ -111,12 +126,33 @@ impl<'a> Shape<'a> {
         {
             base = Base::on(stalk);
         }
-        if base.found == Found::End {
-            // Directions are coarse: opposite the tip is finer.
-            let tip = self.tip(base.at);
-            base.at = self.exit(self.centre, (self.centre - tip).normalize_or(DVec2::NEG_Y));
+        if base.stalk.is_none()
+            && let Some(nub) = self.nub(base.at)
+        {
+            base = Base { at: nub, found: Found::Nub, stalk: None };
         }
         base
+    }
+
+    /// The sharpest thing that sticks out of the outline beside `at`: the rest of a petiole too short
+    /// or too conical for a stalk.
+    fn nub(&self, at: DVec2) -> Option<DVec2> {
+        const REACH: f64 = 0.12;
+        const ARM: f64 = 0.05;
+        const LEAST_SHARPNESS: f64 = 0.2;
+        let n = self.ring.len();
+        let arm = (ARM * self.size / self.ring[0].distance(self.ring[1])).ceil() as usize;
+        let arm = arm.clamp(1, n / 4);
+        let sharpness = |i: usize| {
+            let (a, b) = (self.ring[(i + n - arm) % n], self.ring[(i + arm) % n]);
+            (self.ring[i] - a).perp_dot(b - a) / (b - a).length_squared().max(1e-12)
+        };
+        (0..n)
+            .filter(|&i| self.ring[i].distance(at) < REACH * self.size)
+            .map(|i| (sharpness(i), i))
+            .filter(|&(sharp, _)| sharp > LEAST_SHARPNESS)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, i)| self.ring[i])
     }
 
     /// What speaks for a base at `at`, whatever is there.
@@ -142,24 +178,24 @@ impl<'a> Shape<'a> {
         let far = |i: usize| self.ring[i % n].distance(base);
         let off = |i: usize| self.ring[i] - base;
         let within = |i: usize, cos: f64| off(i).dot(along) >= cos * off(i).length();
-        let (wide, narrow) = TIP_WITHIN_DEG;
-        let (wide, narrow) = (libm::cos(wide.to_radians()), libm::cos(narrow.to_radians()));
+        let [lobes, tips, middle] = TIP_WITHIN_DEG.map(|angle| libm::cos(angle.to_radians()));
         let window = n / 40 + 1;
-        let tips: Vec<usize> = (0..n)
+        let outstanding: Vec<usize> = (0..n)
             .filter(|&i| {
-                within(i, wide)
+                within(i, lobes)
                     && off(i).length() > 0.3 * self.size
                     && (1..=window).all(|k| far(i) >= far(i + k) && far(i) >= far(i + n - k))
             })
             .collect();
         let reach = |i: usize| off(i).dot(along);
-        let tip = tips.iter().copied().max_by(|&i, &j| reach(i).total_cmp(&reach(j)));
+        let tip = outstanding.iter().copied().filter(|&i| within(i, tips));
+        let tip = tip.max_by(|&i, &j| reach(i).total_cmp(&reach(j)));
         let twin = |i: usize, j: usize| {
             along.perp_dot(off(i)) * along.perp_dot(off(j)) < 0.0 && reach(j) > 0.7 * reach(i)
         };
-        let lobe = |i: usize| !within(i, narrow) && tips.iter().any(|&j| twin(i, j));
+        let is_lobe = |i: usize| !within(i, middle) && outstanding.iter().any(|&j| twin(i, j));
         match tip {
-            Some(i) if !lobe(i) => self.ring[i],
+            Some(i) if !is_lobe(i) => self.ring[i],
             _ => self.exit(self.centre, along),
         }
     }
@@ -193,7 +229,8 @@ impl<'a> Shape<'a> {
         last.1
     }
 
-    /// The deepest points of the bays of the outline, and how deep under the convex hull.
+    /// The deepest points of the bays of the outline, and how much of a notch each is, 0 to 1: both
+    /// deep, and not just the hollow flank of something that sticks out.
     fn notches(&self) -> Vec<(DVec2, f64)> {
         let n = self.ring.len();
         let hull = convex_hull(self.ring);
@@ -208,7 +245,9 @@ impl<'a> Shape<'a> {
             if let Some(i) = inner.max_by(|&i, &j| depth(i).total_cmp(&depth(j)))
                 && depth(i) > 0.015 * self.size
             {
-                notches.push((self.ring[i % n], depth(i)));
+                let deep = (depth(i) / (0.08 * self.size)).min(1.0);
+                let narrow = (depth(i) / (0.12 * a.distance(b))).min(1.0);
+                notches.push((self.ring[i % n], deep * narrow));
             }
         }
         notches

@@ -37,7 +37,7 @@ impl Stalk {
 }
 
 /// Wider than this, as a share of the root of the leaf's area, is a lobe.
-const MOST_WIDTH: f64 = 0.13;
+const MOST_WIDTH: f64 = 0.16;
 /// Shorter than this, in widths, is a tooth.
 const LEAST_SLENDERNESS: f64 = 0.7;
 /// Shorter than this, as a share of the root of the leaf's area, is a flaw of the outline.
@@ -111,7 +111,7 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let mut start = 0;
     for (k, chord) in chords.iter().enumerate() {
         widths.push(chord.width);
-        if chord.depth < LEAST_LENGTH * size || chord.depth < 3.0 * step {
+        if chord.depth < LEAST_LENGTH * size || chord.depth < 4.0 * step {
             continue;
         }
         while chords[start].depth < 0.25 * chord.depth {
@@ -120,7 +120,8 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
         let mut behind = widths[start..=k].to_vec();
         let half = behind.len() / 2;
         typical = *behind.select_nth_unstable_by(half, f64::total_cmp).1;
-        if typical > MOST_WIDTH * size {
+        // The end may be wider than the rest.
+        if typical > 1.5 * MOST_WIDTH * size {
             return None;
         }
         if chord.width > FLARED * typical {
@@ -132,11 +133,19 @@ fn zip(ring: &[DVec2], end: usize, size: f64) -> Option<Stalk> {
     let cut = chords[..flared].iter().rposition(|c| c.width <= CUT_AT * typical)?;
     let attached = &chords[cut];
     let length = attached.depth;
-    if length < LEAST_SLENDERNESS * typical || length < LEAST_LENGTH * size {
+    let too_short = length < (LEAST_SLENDERNESS * typical).max(LEAST_LENGTH * size);
+    if too_short || typical > MOST_WIDTH * size {
         return None;
     }
     let third = chords.iter().find(|c| c.depth >= 0.35 * length)?;
     if third.width < LEAST_AT_THIRD * typical {
+        return None;
+    }
+    // Both banks are as long, and the cut goes straight across; else the zip started beside a tip.
+    let (one, other) = ((end + n - attached.from) % n, (attached.to + n - end) % n);
+    let across = (ring[attached.to] - ring[attached.from]).normalize_or_zero();
+    let along = ((ring[attached.to] + ring[attached.from]) * 0.5 - ring[end]).normalize_or_zero();
+    if one.min(other) * 2 < one.max(other) || across.dot(along).abs() > 0.6 {
         return None;
     }
     // The two banks must enclose blade, not the gap between two lobes.

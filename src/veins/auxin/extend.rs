@@ -35,7 +35,7 @@ impl Nodes {
     pub(super) fn new(
         spec: &VeinSpec,
         blade: &GrowingBlade,
-        roots: &[DVec2],
+        start: VeinGraph,
         metric: Metric,
     ) -> Self {
         let bounds = blade.mature().bounds();
@@ -43,19 +43,15 @@ impl Nodes {
         let far_cell_mm = (2.0 * step_mm).max(spec.vein_spawn_distance_mm.min(10.0 * step_mm));
         let cell = |mm: f64| metric.reach(metric.length(mm)).max_element();
         let mut nodes = Self {
-            graph: VeinGraph::new(),
+            graph: start,
             near: PointGrid::new(bounds, cell(step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             far_cell_mm,
         };
-        for &root in roots {
-            let taken = nodes.graph.positions().contains(&root);
-            if !taken && blade.is_inside(root, *blade.steps().start()) {
-                nodes.graph.add_root(root);
-                nodes.near.push(root);
-                nodes.far.push(root);
-            }
+        for &node in nodes.graph.positions() {
+            nodes.near.push(node);
+            nodes.far.push(node);
         }
         nodes
     }

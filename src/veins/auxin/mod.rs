@@ -12,15 +12,15 @@
 //!
 //! Lengths in the settings are millimetres of the blade at the step in question.
 
+mod claims;
 mod extend;
 mod open;
 mod sources;
-
-use glam::DVec2;
+mod tiles;
 
 use super::graph::VeinGraph;
 use super::{Unreached, VeinError, VeinSpec};
-use crate::growth::{GrowingBlade, GrowthType};
+use crate::growth::{GrowingBlade, GrowthType, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
 use extend::Nodes;
@@ -45,7 +45,16 @@ pub struct Grown {
 /// million.
 const MAX_NODES: usize = 10_000_000;
 
-/// Grows open venation from `roots` (in the frame of the mature leaf).
+/// How many nodes the blade can hold before they stand closer than a quarter of a step everywhere,
+/// as children of one node never do. Without this limit a shower of darts with no least distances
+/// lets veins double in every step, until millions of nodes stand in one place.
+fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
+    let step = metric.reach(metric.length(spec.node_step_mm));
+    10_000.0 + 16.0 * blade.mature().area_mm2() / step.element_product()
+}
+
+/// Grows open venation from the veins of `start` (in the frame of the mature leaf): bare roots, or
+/// guides, which are there from the first step on.
 ///
 /// # Errors
 ///
@@ -53,13 +62,13 @@ const MAX_NODES: usize = 10_000_000;
 pub fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
-    roots: &[DVec2],
+    start: VeinGraph,
     rng: &mut Rng,
     observer: &mut dyn Observer,
 ) -> Result<Grown, VeinError> {
     let mut supply = Supply::new(spec, blade)?;
     let first = *blade.steps().start();
-    let mut nodes = Nodes::new(spec, blade, roots, blade.metric(first));
+    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first));
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
@@ -80,16 +89,15 @@ pub fn grow(
         for node in called {
             nodes.extend(node, &calls, blade, step, metric);
         }
-        if nodes.len() > MAX_NODES {
-            let problem =
-                format!("makes more than {MAX_NODES} vein nodes; raise it, or throw fewer darts");
+        if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
+            let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
+                           throw fewer darts";
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));
         }
-        // Remove the sources that have been reached.
-        calls.take_over(before, &nodes, metric);
-        let dead = calls.kill(metric);
+        // Let the new nodes take sources over, and remove those that have been reached.
+        let dead = calls.take_over(before, &nodes, metric);
         let stands_still = dead.is_empty() && nodes.len() == before;
-        supply.forget(dead);
+        supply.forget(&dead);
         made += 1;
         nodes_after_step.push(nodes.len() as u32);
         if made % pace == 0 || made == steps {

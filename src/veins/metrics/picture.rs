@@ -42,9 +42,9 @@ pub fn network(veins: Grid<bool>, pixel: f64) -> Network {
         if segments.len() == before {
             break;
         }
-        segments = merged(nodes.len(), segments);
+        segments = merged(nodes.len(), &segments);
     }
-    Network::new(&nodes, segments, &[], &[])
+    Network::new(&nodes, &segments, &[], &[])
 }
 
 fn largest(mut veins: Grid<bool>) -> Grid<bool> {

@@ -16,7 +16,7 @@ use crate::veins::VeinGraph;
 
 fn network(nodes: &[DVec2], edges: &[[usize; 2]], outline: &[DVec2]) -> Network {
     let segment = |&ends: &[usize; 2]| Segment::new(ends, ends.map(|i| nodes[i]).to_vec(), 0.1, 1);
-    Network::new(nodes, edges.iter().map(segment).collect(), &[], outline)
+    Network::new(nodes, &edges.iter().map(segment).collect::<Vec<_>>(), &[], outline)
 }
 
 /// `columns` × `rows` squares of side 1, in a blade of just that size.

@@ -234,3 +234,47 @@ fn between(
     });
     if free { points } else { shares.map(|t| a.lerp(b, t)).collect() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::margin::{self, MarginSpec};
+
+    #[test]
+    fn no_segment_stays_long_and_counts_follow() {
+        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let mut graph = VeinGraph::new();
+        let mut tip = graph.add_root(DVec2::new(0.0, 5.0));
+        for i in 1..12 {
+            let kink = if i % 2 == 0 { 1.0 } else { -1.0 };
+            tip = graph.sprout(tip, DVec2::new(kink, 5.0 + 4.0 * f64::from(i)));
+            if i == 5 {
+                graph.sprout(tip, DVec2::new(8.0, 30.0));
+            }
+        }
+        let spec = VeinSpec { smoothing: 1.0, ..VeinSpec::default() };
+        let nodes_after_step = vec![1, 4, graph.len() as u32];
+        let kinked = graph.clone();
+        let made = smoothed(&spec, &margin, graph, nodes_after_step);
+        assert_eq!(made.graph.check(), None);
+        let at = |node: NodeId| made.graph.positions()[node as usize];
+        let longest = made.graph.edges().map(|(a, b)| at(a).distance(at(b))).fold(0.0, f64::max);
+        assert!(longest <= LONG * spec.node_step_mm * 1.3, "{longest}");
+        assert_eq!(made.nodes_after_step[0], 1);
+        assert_eq!(made.nodes_after_step[2], made.graph.len() as u32);
+        let fourth = kinked.positions()[3];
+        assert!(at(made.nodes_after_step[1] - 1).distance(fourth) < 2.0);
+        let stray = made.graph.positions().iter().filter(|p| p.y < 27.0).map(|p| p.x.abs());
+        assert!(stray.fold(0.0, f64::max) < 1.1);
+    }
+
+    #[test]
+    fn nothing_changes_without_smoothing() {
+        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let mut graph = VeinGraph::new();
+        let root = graph.add_root(DVec2::new(0.0, 5.0));
+        graph.sprout(root, DVec2::new(0.0, 50.0));
+        let made = smoothed(&VeinSpec::default(), &margin, graph.clone(), vec![2]);
+        assert_eq!(made, Smoothed { graph, nodes_after_step: vec![2] });
+    }
+}

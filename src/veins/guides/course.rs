@@ -59,7 +59,8 @@ impl Course {
         curve::beginning(&self.to_margin(ground), share)
     }
 
-    /// Towards the margin, then up along it inside a border of 1 − `share` of the way, for a while.
+    /// Towards the margin, then up along it inside a border of 1 − `share` of the way, for `after`
+    /// times the way.
     pub(super) fn along_margin(&self, ground: &Ground<'_>, share: f64, after: f64) -> Vec<DVec2> {
         let reach = self.reach(ground);
         let piece = reach / PIECES;
@@ -67,12 +68,15 @@ impl Course {
         let mut line = vec![self.from];
         let (mut p, mut turned_at) = (self.from, None);
         for i in 0..((LONGEST + after) * PIECES) as usize {
-            let own = self.heading((i as f64 + 0.5) / PIECES);
+            let walked = (i as f64 + 0.5) / PIECES;
+            let own = self.heading(walked);
             let (distance, rim) = ground.rim(p);
-            let along = 1.0 - smoothstep(border, 3.0 * border, distance);
-            // Inside the border it turns back from the margin, softly.
+            // A vein that leaves at the base of the blade begins beside the margin.
+            let away = smoothstep(0.2, 0.5, walked);
+            let along = away * (1.0 - smoothstep(0.6 * border, 1.8 * border, distance));
             let heading = own.lerp(rim, along).normalize_or(own);
-            if along > 0.9 && turned_at.is_none() {
+            let beside = away * own.dot(rim) > 0.97 && distance < 1.2 * border;
+            if (along > 0.5 || beside) && turned_at.is_none() {
                 turned_at = Some(i);
             }
             if turned_at.is_some_and(|t| (i - t) as f64 > after * PIECES) {

@@ -17,11 +17,12 @@ const ARCH_AT: f64 = 0.8;
 /// A secondary of full irregularity leaves at up to so many degrees more or less.
 const ANGLE_SPREAD: f64 = 16.0;
 
-/// Secondaries end this share of the width inside the others' border at the base of the blade.
+/// The least part of a secondary on its way to the margin that is worth laying, where it should reach
+/// it.
 const LEAST_CRASPEDODROMOUS: f64 = 0.6;
 
-/// The least part of any other that is worth laying.
-const LEAST: f64 = 0.35;
+/// The same for others.
+const LEAST: f64 = 0.45;
 
 /// What one secondary is to be.
 #[derive(Debug, Clone, Copy)]
@@ -251,7 +252,7 @@ impl Row<'_> {
         let least = match (crosses, craspedodromous) {
             (true, _) => 0.02,
             (_, true) => LEAST_CRASPEDODROMOUS,
-            _ => LEAST,
+            _ => LEAST * curve::length(&full) / curve::length(&line),
         };
         let vein = self.attach(planter, parent, share, plan, &line, least)?;
         if vein.hit.is_some() && crosses {
@@ -273,7 +274,9 @@ impl Row<'_> {
         };
         match spec.secondary {
             SecondaryType::Semicraspedodromous | SecondaryType::FestoonedSemicraspedodromous => {
-                branch_to(planter, &vein, full[full.len() - 1]);
+                if above.is_some() {
+                    branch_to(planter, &vein, full[full.len() - 1]);
+                }
             }
             SecondaryType::Reticulodromous => fork(planter, &vein, plan, 3, 38.0, 0.9),
             SecondaryType::Cladodromous => fork(planter, &vein, plan, 2, 24.0, 0.97),

@@ -106,6 +106,8 @@ fn inradii(lines: &Lines, inside: &Grid<bool>, distances: &Grid<f32>) -> Vec<f64
         let distance = if inside.values()[i] { distances.values()[i] } else { f32::INFINITY };
         *greatest = greatest.max(distance);
     }
-    let of_areole = greatest[1..].iter().filter(|distance| distance.is_finite());
+    // Where two lines leave a junction at a narrow angle, pixels between them may be cut off too.
+    let of_areole =
+        greatest[1..].iter().filter(|distance| distance.is_finite() && **distance > 1.0);
     of_areole.map(|&distance| f64::from(distance) * lines.frame.pixel).collect()
 }

@@ -12,6 +12,7 @@
 //! ```
 
 pub mod areoles;
+pub mod bins;
 pub mod distances;
 pub mod hull;
 pub mod junctions;

@@ -191,6 +191,7 @@ fn a_forking_tree_has_no_loops_and_halves_its_streams() {
     assert_eq!((topology.loops(), topology.free_ends, topology.junctions), (0, 32, 31));
     assert!(close(topology.spanning_length, network.length(), 1e-9));
     assert!(Areoles::of(&network).list.is_empty());
+    assert_eq!(Distances::of(&network).unwrap().inradius_mean, None);
     let table = strahler(&network);
     let streams: Vec<usize> = table.iter().map(|order| order.streams).collect();
     assert_eq!(streams, [32, 16, 8, 4, 2, 1]);

@@ -86,7 +86,7 @@ impl Measures {
         let topology = Topology::of(network);
         let areoles = Areoles::of(network);
         let junctions = junctions(network);
-        let distances = Distances::of(network);
+        let distances = Distances::of(network, areoles.list.len());
         let segments = network.segments();
         let widths: Vec<f64> = segments.iter().map(|segment| segment.width).collect();
         let nesting = Nesting::of(&areoles, &widths);

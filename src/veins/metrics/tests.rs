@@ -101,7 +101,7 @@ fn a_grid_of_squares_has_square_areoles() {
 
 #[test]
 fn tissue_in_squares_is_a_sixth_of_their_side_from_a_vein() {
-    let distances = Distances::of(&squares(8, 12)).unwrap();
+    let distances = Distances::of(&squares(8, 12), 96).unwrap();
     assert!(close(distances.mean, 1.0 / 6.0, 0.002), "{distances:?}");
     // A share 1 − (1 − 2d)² lies nearer than d.
     assert!(close(distances.median, (1.0 - 0.5f64.sqrt()) / 2.0, 0.003), "{distances:?}");
@@ -115,7 +115,7 @@ fn veins_side_by_side_leave_a_quarter_of_their_spacing() {
     let edges: Vec<[usize; 2]> = (0..10).map(|i| [2 * i, 2 * i + 1]).collect();
     let outline = [(0.0, 0.0), (10.0, 0.0), (10.0, 20.0), (0.0, 20.0)].map(DVec2::from);
     let network = network(&nodes, &edges, &outline);
-    let distances = Distances::of(&network).unwrap();
+    let distances = Distances::of(&network, 0).unwrap();
     // Lines along the sides of pixels are the worst case of the grid.
     assert!(close(distances.mean * network.length() / 200.0, 0.25, 0.003), "{distances:?}");
     assert_eq!(distances.inradius_mean, None);
@@ -191,7 +191,7 @@ fn a_forking_tree_has_no_loops_and_halves_its_streams() {
     assert_eq!((topology.loops(), topology.free_ends, topology.junctions), (0, 32, 31));
     assert!(close(topology.spanning_length, network.length(), 1e-9));
     assert!(Areoles::of(&network).list.is_empty());
-    assert_eq!(Distances::of(&network).unwrap().inradius_mean, None);
+    assert_eq!(Distances::of(&network, 0).unwrap().inradius_mean, None);
     let table = strahler(&network);
     let streams: Vec<usize> = table.iter().map(|order| order.streams).collect();
     assert_eq!(streams, [32, 16, 8, 4, 2, 1]);

@@ -334,22 +334,6 @@ pub fn run_foster(row: &FosterRow, margin: &Margin) -> Result<Measure, Benchmark
     measure(&row.veins, &blade, root, Seed(42))
 }
 
-/// A beech-like blade: ovate, pointed, 100 mm long.
-#[must_use]
-pub fn beech_like_blade() -> Margin {
-    // Half width over height: sin(π t^0.8) with a drawn-out tip, 0.3 lengths at the widest.
-    let side = |i: usize| {
-        let t = i as f64 / 60.0;
-        let half = libm::sin(std::f64::consts::PI * libm::pow(t, 0.8)) * (1.0 - 0.3 * t * t);
-        DVec2::new(0.3 * half, t) * LENGTH_MM
-    };
-    let mut outline = vec![DVec2::ZERO];
-    outline.extend((1..60).map(side));
-    outline.push(DVec2::new(0.0, LENGTH_MM));
-    outline.extend((1..60).rev().map(side).map(|p| DVec2::new(-p.x, p.y)));
-    Margin::new(outline, 60, Vec::new(), "").expect("a beech leaf is a margin")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use venation::benchmark::{self, BenchmarkError, Measure, Workload};
+use venation::margin::{self, Margin};
+use venation::presets;
 use venation::seed::Seed;
 
 use super::Failure;
@@ -109,7 +111,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
     let head = ["", "auxins", "nodes", "steps", "CPU s", "wall s"];
     writeln!(out, "{}  not reached", columns(head.map(String::from)))?;
     if let Some(Suite::Foster) = args.suite {
-        let blade = benchmark::beech_like_blade();
+        let blade = beech()?;
         for row in benchmark::foster_suite() {
             let measure =
                 median(args.runs, || benchmark::run_foster(&row, &blade)).map_err(Error::Run)?;
@@ -146,6 +148,13 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
         super::save(path, csv(&results.lines).into_bytes())?;
     }
     Ok(())
+}
+
+/// The blade of the suite: the report's own is not printed, so the beech preset's stands in.
+fn beech() -> Result<Margin, Failure> {
+    let preset = presets::find("beech").expect("beech comes with venation");
+    let spec = preset.document()?.resolve(Seed(1))?;
+    Ok(margin::build(&spec.margin).map_err(venation::error::Error::from)?)
 }
 
 /// The run of median time.

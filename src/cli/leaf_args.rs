@@ -133,6 +133,11 @@ fn read_document(leaf: &str) -> Result<Document, Failure> {
 }
 
 impl LeafArgs {
+    /// Whether `--set` gives this key.
+    pub(crate) fn sets(&self, key: &str) -> bool {
+        self.set.iter().any(|assignment| assignment.split('=').next().map(str::trim) == Some(key))
+    }
+
     /// The document that the flags describe: preset or file, outline, then the flags over it.
     pub(crate) fn document(&self, context: &Context<'_>) -> Result<Document, Failure> {
         let mut document = read_document(&self.leaf)?;

@@ -274,6 +274,21 @@ fn compare_writes_a_sheet_and_a_table() {
 }
 
 #[test]
+fn compare_shows_scatter_patterns_by_spacing_and_algorithms() {
+    let folder = fresh();
+    let by = |word| ["compare", "lilac", "--by", word, "--csv", "t.csv", "-o", "s.png", "--force"];
+    succeed(folder.path(), &small(&by("scatter")));
+    let table = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    assert!(table.starts_with("scatter,seed,nodes,"), "{table}");
+    let row = |i: usize| table.lines().nth(i).unwrap_or_default();
+    assert!(row(1).starts_with("square 3 px,") && row(16).starts_with("random 10 px,"), "{table}");
+    assert_eq!(row(16).split(',').nth(3), Some("125"));
+    succeed(folder.path(), &small(&by("algorithm")));
+    let table = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    assert!(table.contains("\nauxin-open,") && table.contains("\nparticles,"), "{table}");
+}
+
+#[test]
 fn bench_prints_a_table_and_the_exponent() {
     let folder = fresh();
     let out = succeed(

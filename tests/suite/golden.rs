@@ -212,3 +212,15 @@ fn golden_growth_types() {
         .collect();
     compare("readme_growth", &sheet("growth types, seen from below", &panels, 4, 384));
 }
+
+#[test]
+fn golden_guided_veins() {
+    let leaf = leaf(&document("beech", &[]), 1, 1024);
+    let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let panels = [
+        panel(front.base_colour.clone(), "front"),
+        panel(back.base_colour.clone(), "back"),
+        panel(normals(back), "back, normal"),
+    ];
+    compare("readme_guides", &sheet("", &panels, 3, 480));
+}

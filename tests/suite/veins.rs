@@ -6,7 +6,7 @@ use venation::growth::{GrowingBlade, GrowthSpec, GrowthType};
 use venation::margin::Margin;
 use venation::observer::{Progress, Silent};
 use venation::seed::{Rng, Seed, Stage};
-use venation::veins::{self, VeinGraph, VeinSpec, Venation, auxin};
+use venation::veins::{self, VeinSpec, Venation, auxin};
 
 use super::reference::{self, Frame};
 
@@ -106,9 +106,9 @@ fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
     for_all_cases(8, |name, blade, spec, seed| {
         let (root, darts) = (blade.root(), || Seed(seed).stream(Stage::AuxinSources));
         let slow = reference::grow(spec, blade, root, &mut darts(), Frame::Mature, usize::MAX);
-        let mut start = VeinGraph::new();
-        start.add_root(root);
-        let fast = auxin::grow(spec, blade, start, &mut darts(), &mut Silent).expect(name);
+        let mut bare = veins::VeinGraph::new();
+        bare.add_root(root);
+        let fast = auxin::grow(spec, blade, bare, &mut darts(), &mut Silent).expect(name);
         assert_eq!(fast.graph.len(), slow.positions.len(), "{name}");
         for (id, &p) in fast.graph.positions().iter().enumerate() {
             let parent = fast.graph.parent(id as u32).map(|parent| parent as usize);

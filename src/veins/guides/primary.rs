@@ -198,7 +198,8 @@ fn arches(
             }
         }
     }
-    primaries.secondaries_from = origin;
+    // Below, a secondary would come out on the far side of the arches.
+    primaries.secondaries_from = origin + 0.12;
 }
 
 /// A line that leaves the base at a wide angle and comes back to `line` where that has settled.

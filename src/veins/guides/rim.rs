@@ -109,6 +109,22 @@ impl Rim {
             .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// Lays it where nothing ends in it: past the branches that come to the margin.
+    fn lay_past(&self, planter: &mut Planter<'_>, line: &[DVec2]) {
+        let mut rest = line;
+        while rest.len() > 4 {
+            let Some(vein) = planter.lay_beside(rest, self.rank, 0.0) else {
+                rest = &rest[1..];
+                continue;
+            };
+            planter.join_hit(&vein);
+            let (_, end, _) = vein.end();
+            let distance = |i: &usize| rest[*i].distance_squared(end);
+            let passed = (0..rest.len()).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+            rest = &rest[passed.unwrap_or(0) + 1..];
+        }
+    }
+
     /// Lays it.
     pub(super) fn lay(mut self, planter: &mut Planter<'_>, primaries: &Primaries) {
         for side in [1.0, -1.0] {
@@ -130,9 +146,7 @@ impl Rim {
             let landings = &mut self.landings[of(side)];
             landings.sort_by(|a, b| a.0.total_cmp(&b.0));
             let Some(&(lowest, node)) = landings.first() else {
-                if let Some(vein) = planter.lay_beside(&line, self.rank, 0.0) {
-                    planter.join_hit(&vein);
-                }
+                self.lay_past(planter, &line);
                 continue;
             };
             // Down to the base, then from each one up to the next.

@@ -37,9 +37,9 @@ const PIXELS_PER_SPACING: f64 = 16.0;
 const MOST_PIXELS: f64 = 16e6;
 
 impl Distances {
-    /// Measures; `None` without veins or blade.
+    /// Measures a network with so many areoles; `None` without veins or blade.
     #[must_use]
-    pub fn of(network: &Network) -> Option<Self> {
+    pub fn of(network: &Network, areoles: usize) -> Option<Self> {
         let (area, length) = (network.blade_area(), network.length());
         if !(area > 0.0 && length > 0.0) {
             return None;
@@ -65,7 +65,7 @@ impl Distances {
             f64::from(*all.select_nth_unstable_by(place, f32::total_cmp).1) * frame.pixel
         };
         let (median, p95) = (quantile(0.5), quantile(0.95));
-        let inradii = inradii(&lines, &inside, &distances);
+        let inradii = inradii(&lines, &inside, &distances, areoles);
         Some(Self {
             pixel: frame.pixel,
             mean: total / all.len() as f64 * frame.pixel,
@@ -91,8 +91,8 @@ fn inside(network: &Network, frame: &Frame) -> Grid<bool> {
     Grid::from_values(frame.width, frame.height, values)
 }
 
-/// The greatest distance in each region that veins close off from the rest (in leaf units).
-fn inradii(lines: &Lines, inside: &Grid<bool>, distances: &Grid<f32>) -> Vec<f64> {
+/// The greatest distance in each areole (in leaf units).
+fn inradii(lines: &Lines, inside: &Grid<bool>, distances: &Grid<f32>, areoles: usize) -> Vec<f64> {
     let mut pixel = 0;
     let tissue = inside.map(|_| {
         pixel += 1;
@@ -106,6 +106,11 @@ fn inradii(lines: &Lines, inside: &Grid<bool>, distances: &Grid<f32>) -> Vec<f64
         let distance = if inside.values()[i] { distances.values()[i] } else { f32::INFINITY };
         *greatest = greatest.max(distance);
     }
-    let of_areole = greatest[1..].iter().filter(|distance| distance.is_finite());
-    of_areole.map(|&distance| f64::from(distance) * lines.frame.pixel).collect()
+    let mut closed: Vec<usize> =
+        (1..greatest.len()).filter(|&label| greatest[label].is_finite()).collect();
+    // Pixels between veins that pass each other closely are cut off too: the largest regions are
+    // the areoles.
+    closed.sort_by_key(|&label| std::cmp::Reverse(regions.areas[label]));
+    let of_areole = closed.into_iter().take(areoles).map(|label| f64::from(greatest[label]));
+    of_areole.map(|distance| distance * lines.frame.pixel).collect()
 }

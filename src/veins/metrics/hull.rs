@@ -62,7 +62,8 @@ fn reachable_from_border(mask: &Grid<bool>) -> Vec<bool> {
     let (width, height) = (mask.width(), mask.height());
     let mut outside = vec![false; width * height];
     let is_border = |i: &usize| {
-        i % width == 0 || i % width == width - 1 || i / width == 0 || i / width == height - 1
+        let (x, y) = (i % width, i / width);
+        x == 0 || y == 0 || x + 1 == width || y + 1 == height
     };
     let mut open: Vec<usize> =
         (0..width * height).filter(is_border).filter(|&i| !mask.values()[i]).collect();

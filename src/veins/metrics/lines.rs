@@ -2,10 +2,12 @@
 //! to them are good to a small part of a pixel.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::network::Network;
 use crate::geometry::Rect;
 use crate::raster::Grid;
+use crate::raster::components::neighbours;
 use crate::raster::distance::{NO_SITE, nearest_sites};
 
 /// A grid laid over the plane: y down, pixel (0, 0) at the upper left.
@@ -50,7 +52,7 @@ impl Frame {
 #[derive(Debug)]
 pub(super) struct Lines {
     pub(super) frame: Frame,
-    /// For pixels on a line, where in the pixel it runs, in 255ths; `OFF` elsewhere.
+    /// For pixels on a line, where in the pixel it runs, in 254ths; `OFF` elsewhere.
     places: Grid<[u8; 2]>,
 }
 
@@ -73,20 +75,25 @@ impl Lines {
     }
 
     /// The distance from the centre of every pixel to the nearest line, in pixels.
+    ///
+    /// The nearest pixel on a line need not be that of the nearest line, by up to a pixel where two
+    /// lines are equally far: those of the four neighbours are tried too.
     pub(super) fn distances(&self) -> Grid<f32> {
         let Frame { width, height, .. } = self.frame;
         let nearest = nearest_sites(width, height, |i| self.is_line(i));
-        let centre = |i: usize| DVec2::new((i % width) as f64, (i / width) as f64);
-        let mut pixel = 0;
-        nearest.map(|&site| {
-            let here = centre(pixel) + 0.5;
-            pixel += 1;
-            if site == NO_SITE {
-                return f32::INFINITY;
-            }
-            let [x, y] = self.places.values()[site as usize].map(|v| f64::from(v) / 255.0);
-            here.distance(centre(site as usize) + DVec2::new(x, y)) as f32
-        })
+        let corner = |i: usize| DVec2::new((i % width) as f64, (i / width) as f64);
+        let distance = |i: usize| {
+            let to = |near: usize| match nearest.values()[near] {
+                NO_SITE => f64::INFINITY,
+                site => {
+                    let [x, y] = self.places.values()[site as usize].map(|v| f64::from(v) / 254.0);
+                    (corner(i) + 0.5).distance_squared(corner(site as usize) + DVec2::new(x, y))
+                }
+            };
+            neighbours(i, width, height).map(to).fold(to(i), f64::min).sqrt() as f32
+        };
+        let values = (0..width * height).into_par_iter().map(distance).collect();
+        Grid::from_values(width, height, values)
     }
 }
 

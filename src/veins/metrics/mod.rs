@@ -12,6 +12,7 @@
 //! ```
 
 pub mod areoles;
+pub mod bins;
 pub mod distances;
 pub mod hull;
 pub mod junctions;
@@ -24,6 +25,8 @@ pub mod picture;
 pub mod rows;
 mod statistics;
 pub mod strahler;
+#[cfg(test)]
+mod tests;
 pub mod topology;
 
 pub use measures::Measures;

@@ -79,12 +79,7 @@ impl Network {
     /// Merges the nodes of degree 2 and drops those without a segment. Without an outline (fewer
     /// than 3 points) the blade is what [`hull::outline`] finds around the veins.
     #[must_use]
-    pub fn new(
-        nodes: &[DVec2],
-        segments: Vec<Segment>,
-        roots: &[usize],
-        outline: &[DVec2],
-    ) -> Self {
+    pub fn new(nodes: &[DVec2], segments: &[Segment], roots: &[usize], outline: &[DVec2]) -> Self {
         let mut is_root = vec![false; nodes.len()];
         for &root in roots {
             is_root[root] = true;
@@ -121,7 +116,7 @@ impl Network {
         }));
         let roots: Vec<usize> =
             (0..graph.len()).filter(|&node| graph.parent(node as u32).is_none()).collect();
-        Self::new(positions, segments, &roots, outline)
+        Self::new(positions, &segments, &roots, outline)
     }
 
     /// Where veins meet or end.
@@ -231,8 +226,8 @@ impl Incidence {
 }
 
 /// The segments chained through nodes of degree 2.
-pub(super) fn merged(nodes: usize, segments: Vec<Segment>) -> Vec<Segment> {
-    let incidence = Incidence::of(nodes, &segments);
+pub(super) fn merged(nodes: usize, segments: &[Segment]) -> Vec<Segment> {
+    let incidence = Incidence::of(nodes, segments);
     let passes = |node: usize| incidence.at(node).len() == 2;
     let mut taken = vec![false; segments.len()];
     let mut chains = Vec::new();
@@ -256,7 +251,7 @@ pub(super) fn merged(nodes: usize, segments: Vec<Segment>) -> Vec<Segment> {
                 break;
             }
         }
-        chains.push(joined(&segments, &pieces));
+        chains.push(joined(segments, &pieces));
     };
     // From junctions and ends first; what is left then are rings.
     for node in (0..nodes).filter(|&node| !passes(node)) {

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::network::{Network, Segment, merged};
 use crate::raster::Grid;
-use crate::raster::components::Components;
+use crate::raster::components::{Components, neighbours};
 use crate::raster::skeleton::Skeleton;
 
 /// Ends shorter than this many times their width are no veins.
@@ -27,7 +27,7 @@ pub const FINEST_WIDTH_PX: f64 = 6.0;
 #[must_use]
 pub fn network(veins: Grid<bool>, pixel: f64) -> Network {
     let height = veins.height() as f64;
-    let veins = largest(veins);
+    let veins = without_pinholes(largest(veins));
     let skeleton = Skeleton::of(&veins);
     let place = |p: DVec2| DVec2::new(p.x, height - p.y) * pixel;
     let nodes: Vec<DVec2> = skeleton.nodes.iter().map(|&p| place(p)).collect();
@@ -42,9 +42,9 @@ pub fn network(veins: Grid<bool>, pixel: f64) -> Network {
         if segments.len() == before {
             break;
         }
-        segments = merged(nodes.len(), segments);
+        segments = merged(nodes.len(), &segments);
     }
-    Network::new(&nodes, segments, &[], &[])
+    Network::new(&nodes, &segments, &[], &[])
 }
 
 fn largest(mut veins: Grid<bool>) -> Grid<bool> {
@@ -52,6 +52,26 @@ fn largest(mut veins: Grid<bool>) -> Grid<bool> {
     let largest = parts.largest().map_or(0, |(label, _)| label);
     for (vein, &label) in veins.values_mut().iter_mut().zip(parts.labels.values()) {
         *vein = label != 0 && label == largest;
+    }
+    veins
+}
+
+/// Fills holes smaller than a vein is wide each way: noise of the picture, which as areoles would
+/// spoil every mean over them.
+fn without_pinholes(mut veins: Grid<bool>) -> Grid<bool> {
+    let (width, height) = (veins.width(), veins.height());
+    let (mut area, mut sides) = (0u64, 0u64);
+    for i in (0..width * height).filter(|&i| veins.values()[i]) {
+        area += 1;
+        sides += neighbours(i, width, height).filter(|&next| !veins.values()[next]).count() as u64;
+    }
+    // A strip has twice its length as boundary, and pixels make that longer by 4/π on the mean.
+    let boundary = sides as f64 * std::f64::consts::FRAC_PI_4;
+    let mean_width = 2.0 * area as f64 / boundary.max(1.0);
+    let regions = Components::of(&veins.map(|vein| !vein));
+    for (vein, &label) in veins.values_mut().iter_mut().zip(regions.labels.values()) {
+        let region = regions.areas[label as usize] as f64;
+        *vein |= label != 0 && region < mean_width * mean_width;
     }
     veins
 }

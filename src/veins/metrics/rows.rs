@@ -57,6 +57,7 @@ impl Row {
 }
 
 /// Row, key, name and band of the measures that count.
+#[expect(clippy::approx_constant, reason = "0.318 is measured, not 1/π")]
 const BANDS: [(u32, &str, &str, RangeInclusive<f64>); 22] = [
     (1, "loop_index", "loop index, areoles x area / length²", 0.16..=0.22),
     (2, "mst_ratio", "spanning tree length / length", 0.38..=0.88),

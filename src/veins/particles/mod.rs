@@ -69,7 +69,7 @@ parameters! {
         /// How many particles start; 0 to take as many as the spacing gives.
         count: count(0, 0..=1_000_000, "particles"),
         /// How far a particle moves in one step.
-        step_mm: number(0.4, 0.001..=100.0, "mm"),
+        step_mm: number(0.2, 0.001..=100.0, "mm"),
         /// Particles nearer to each other than this become one.
         merge_radius_mm: number(0.8, 0.0..=1000.0, "mm"),
         /// Energy of each particle at the start; one of energy 1 leaves a vein of `tip_radius_mm`.

@@ -145,7 +145,9 @@ impl Steer {
     }
 }
 
-/// A sum of two unit vectors shorter than this (squared) points nowhere.
+/// A sum of two unit vectors shorter than this (squared) points nowhere. Not more than rounding: with
+/// 0.25 a particle that is followed never turns to the one behind it, and the trails stay a bundle of
+/// straight lines.
 const LEAST_SUM: f64 = 1e-12;
 
 fn unit(v: DVec2) -> DVec2 {

@@ -125,9 +125,10 @@ fn obvious(spec: &ParticleSpec, margin: &Margin, starts: &[DVec2]) -> Flowed {
                 .filter(|&other| *lost || steer.sees(*p, other));
             *p = steer.step(*p, nearest, spec.step_mm, lost);
         }
-        while attracted {
+        loop {
             let mut closest: Option<(f64, usize, usize)> = None;
-            for i in 0..all.len() {
+            let merging = if attracted { all.len() } else { 0 };
+            for i in 0..merging {
                 for j in i + 1..all.len() {
                     let (Some(a), Some(b)) = (all[i], all[j]) else { continue };
                     let found = (a.0.distance_squared(b.0), i, j);

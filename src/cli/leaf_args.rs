@@ -76,7 +76,8 @@ pub(crate) struct LeafArgs {
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
-    /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y), no darts.
+    /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
+    /// darts; they make the whole pattern: guides and smoothing are off unless --set.
     #[arg(long, value_name = "FILE.csv")]
     sources: Option<PathBuf>,
     /// Set any key: `--set veins.kill_distance_mm=0.6`, a range `0.5..0.8`, `20±10%`.
@@ -156,6 +157,9 @@ impl LeafArgs {
         if let Some(path) = &self.sources {
             let points = read_sources(path)?;
             document.insert("veins.sources_mm", Value::Points(points), "--sources");
+            // Given sources make the whole pattern, as they stand: nothing laid, nothing smoothed.
+            document.set("veins.guides.primary=none", "--sources")?;
+            document.set("veins.smoothing=0", "--sources")?;
         }
         for assignment in &self.set {
             document.set(assignment, "--set")?;

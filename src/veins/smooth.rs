@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(made.nodes_after_step[2], made.graph.len() as u32);
         let fourth = kinked.positions()[3];
         assert!(at(made.nodes_after_step[1] - 1).distance(fourth) < 2.0);
-        let stray = made.graph.positions().iter().filter(|p| p.y < 27.0).map(|p| p.x.abs());
+        let stray = made.graph.positions().iter().filter(|p| p.y < 20.0).map(|p| p.x.abs());
         assert!(stray.fold(0.0, f64::max) < 1.1);
     }
 

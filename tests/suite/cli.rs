@@ -158,6 +158,8 @@ fn given_sources_are_all_the_sources_there_are() {
         "out",
         "--format",
         "json",
+        "--set",
+        "veins.guides.primary=none",
     ]);
     succeed(folder.path(), &arguments);
     let text =

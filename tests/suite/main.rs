@@ -3,6 +3,7 @@
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod files; // what is written, read back by independent readers
 mod golden; // expected pictures, which are also the README's
+mod guides; // veins laid by architecture, in every preset
 mod imports; // outlines from files, odd and broken ones too
 mod inspect; // measures of leaves, and graphs for other programs
 mod layers; // who may use whom

@@ -25,18 +25,18 @@ const PIECES: f64 = 80.0;
 const LONGEST: f64 = 2.2;
 
 impl Course {
-    fn heading(&self, share: f64) -> DVec2 {
+    fn heading(self, share: f64) -> DVec2 {
         let angle = self.angle_deg * (1.0 - self.curvature * share.min(1.3));
         turned(self.ahead, angle, self.side)
     }
 
     /// The way to the margin (mm), about the middle of its directions.
-    pub(super) fn reach(&self, ground: &Ground<'_>) -> f64 {
+    pub(super) fn reach(self, ground: &Ground<'_>) -> f64 {
         ground.cast(self.from, self.heading(0.5))
     }
 
     /// As far as the margin.
-    pub(super) fn to_margin(&self, ground: &Ground<'_>) -> Vec<DVec2> {
+    pub(super) fn to_margin(self, ground: &Ground<'_>) -> Vec<DVec2> {
         let reach = self.reach(ground);
         let piece = reach / PIECES;
         let mut line = vec![self.from];
@@ -55,13 +55,13 @@ impl Course {
     }
 
     /// A share of the way to the margin.
-    pub(super) fn part_way(&self, ground: &Ground<'_>, share: f64) -> Vec<DVec2> {
+    pub(super) fn part_way(self, ground: &Ground<'_>, share: f64) -> Vec<DVec2> {
         curve::beginning(&self.to_margin(ground), share)
     }
 
     /// Towards the margin, then up along it inside a border of 1 − `share` of the way, for `after`
     /// times the way.
-    pub(super) fn along_margin(&self, ground: &Ground<'_>, share: f64, after: f64) -> Vec<DVec2> {
+    pub(super) fn along_margin(self, ground: &Ground<'_>, share: f64, after: f64) -> Vec<DVec2> {
         let reach = self.reach(ground);
         let piece = reach / PIECES;
         let border = (1.0 - share).max(0.02) * reach;

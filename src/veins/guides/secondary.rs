@@ -282,10 +282,10 @@ impl Row<'_> {
             _ => None,
         };
         match spec.secondary {
-            SecondaryType::Semicraspedodromous | SecondaryType::FestoonedSemicraspedodromous => {
-                if above.is_some() {
-                    branch_to(planter, &vein, full[full.len() - 1]);
-                }
+            SecondaryType::Semicraspedodromous | SecondaryType::FestoonedSemicraspedodromous
+                if above.is_some() =>
+            {
+                branch_to(planter, &vein, full[full.len() - 1]);
             }
             SecondaryType::Reticulodromous => fork(planter, &vein, plan, 3, 38.0, 0.9),
             SecondaryType::Cladodromous => fork(planter, &vein, plan, 2, 24.0, 0.97),

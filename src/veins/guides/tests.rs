@@ -161,10 +161,10 @@ fn secondaries_end_in_the_teeth() {
     for side in [1.0, -1.0] {
         let has_vein = |tip: &&targets::Tip| ends.iter().any(|(_, end)| end.distance(tip.at) < 1.0);
         let tips: Vec<_> = teeth.iter().filter(|tip| tip.side == side).collect();
-        let first = tips.iter().position(|tip| has_vein(&tip)).expect("a tooth with a vein");
-        let last = tips.iter().rposition(|tip| has_vein(&tip)).expect("a tooth with a vein");
+        let first = tips.iter().position(&has_vein).expect("a tooth with a vein");
+        let last = tips.iter().rposition(&has_vein).expect("a tooth with a vein");
         assert!(last - first >= 4, "{first} {last}");
-        assert!(tips[first..=last].iter().all(has_vein), "a tooth without a vein on side {side}");
+        assert!(tips[first..=last].iter().all(&has_vein), "a tooth without a vein on side {side}");
     }
     assert!(ends.len() <= teeth.len() + 4, "secondaries between the teeth: {}", ends.len());
 }

@@ -111,6 +111,17 @@ fn leaf_toml_run_again_gives_the_same_bytes() {
 }
 
 #[test]
+fn leaf_toml_remembers_what_was_written() {
+    let folder = fresh();
+    let arguments = ["generate", "willow", "-o", "one", "--maps", "bump", "--format", "svg,csv"];
+    succeed(folder.path(), &small(&arguments));
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "two"]);
+    assert_same(&folder.path().join("one"), &folder.path().join("two"));
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "three", "--maps", "none"]);
+    assert!(!folder.path().join("three/salix-alba_Bump.png").exists());
+}
+
+#[test]
 fn an_outline_keeps_no_path_and_its_leaf_toml_gives_the_same_bytes() {
     let folder = fresh();
     let points: String = (0..60)

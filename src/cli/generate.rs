@@ -101,7 +101,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
     // Nothing is grown before it is known that everything may be written.
     let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
-        jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
+        jobs.iter().filter(|job| !job.is_done(&wanted)).map(|job| (job, job.resume())).collect()
     } else {
         jobs.iter().map(|job| (job, overwrite)).collect()
     };
@@ -145,9 +145,11 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
 }
 
 impl Job {
-    /// Whether an earlier run finished this very leaf: the manifest is written last.
-    fn is_done(&self) -> bool {
-        self.same_settings() && self.folder.join("manifest.json").is_file()
+    /// Whether an earlier run finished this very leaf (the manifest is written last) and every
+    /// file that is wanted is there.
+    fn is_done(&self, wanted: &Wanted) -> bool {
+        let names = io::file_names(&self.spec.name, &wanted.maps, &wanted.formats);
+        self.same_settings() && names.iter().all(|name| self.folder.join(name).is_file())
     }
 
     fn same_settings(&self) -> bool {
@@ -161,8 +163,13 @@ impl Job {
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    /// Threads beyond any machine's take minutes to start and make nothing faster.
+    const MOST: usize = 1024;
     if threads == Some(0) {
         return Err(Failure::Input("--threads: 0 threads make no leaf; give 1 or more".into()));
+    }
+    if let Some(threads) = threads.filter(|&threads| threads > MOST) {
+        return Err(Failure::Input(format!("--threads: {threads} is more than {MOST}")));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
@@ -247,7 +254,7 @@ fn report(
             Err(failure) => {
                 let problem = failure.message().unwrap_or_default().to_owned();
                 if jobs.len() > 1 {
-                    eprintln!("venation: seed {}: {problem}", job.seed);
+                    super::complain(&format!("seed {}: {problem}", job.seed));
                 }
                 list.push(Made {
                     seed: job.seed,

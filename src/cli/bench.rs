@@ -125,7 +125,8 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
     if let Some(Suite::Foster) = args.suite {
         let blade = benchmark::beech_like_blade();
         for row in benchmark::foster_suite() {
-            let measure = median(args.runs, || benchmark::run_foster(&row, &blade)).map_err(Error::Run)?;
+            let measure =
+                median(args.runs, || benchmark::run_foster(&row, &blade)).map_err(Error::Run)?;
             let name = format!("{} {}", row.table, row.value);
             add(out, Line { name, printed_seconds: Some(row.printed_seconds), measure })?;
         }

@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::extend::Nodes;
 use super::open;
 use crate::growth::{GrowingBlade, Metric};
-use crate::veins::graph::NodeId;
 use crate::veins::Unreached;
+use crate::veins::graph::NodeId;
 
 /// The living sources and whom they call.
 pub(super) trait Callers {

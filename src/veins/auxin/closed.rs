@@ -298,9 +298,8 @@ impl Calls {
             let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
                 tag.veins[k] == node && distance2 > kill2
             };
-            let waits = patience
-                && step < tag.last_step
-                && self.around[i].neighbours().any(is_on_its_way);
+            let waits =
+                patience && step < tag.last_step && self.around[i].neighbours().any(is_on_its_way);
             if waits {
                 return true;
             }

@@ -226,6 +226,9 @@ impl Nodes {
         if !blade.is_inside(child, step) || blade.blocks_sight(from, child, step) {
             return Sprout::Blocked;
         }
+        if self.overlaps(node, child, metric) {
+            return Sprout::Taken;
+        }
         if let Some(edge) = self.crossed(from, child, [node, node]) {
             if self.meeting == Meeting::Join {
                 self.join_edge(node, edge, blade, step, metric);
@@ -258,6 +261,15 @@ impl Nodes {
         self.web.as_ref()?.crossed(p, q, apart, self.graph.positions())
     }
 
+    /// Whether an edge from a node would lie on one that it has: back along it, or the same way
+    /// again with a step that has become shorter.
+    fn overlaps(&self, node: NodeId, p: DVec2, metric: Metric) -> bool {
+        let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
+        let stretched = |v: DVec2| v * metric.stretch;
+        let web = self.web.as_ref();
+        web.is_some_and(|web| web.overlaps(node, p, least, stretched, self.graph.positions()))
+    }
+
     /// Whether two nodes are on one vein, or next to each other on two that have met.
     fn are_close(&self, a: NodeId, b: NodeId, metric: Metric) -> bool {
         let Some(web) = &self.web else { return false };
@@ -285,6 +297,7 @@ impl Nodes {
         let is_free = is_near
             && !self.are_close(node, end, metric)
             && !blade.blocks_sight(from, to, step)
+            && !self.overlaps(node, to, metric)
             && self.crossed(from, to, [node, end]).is_none();
         if is_free {
             self.join(node, end);
@@ -306,13 +319,13 @@ impl Nodes {
         let length = metric.length(self.step_mm);
         let least2 = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
         // A vein that has come to the very place needs no child there.
-        let there = arrivals.iter().copied().find(|&node| {
-            metric.distance_squared(self.position(node), place) < least2
-        });
+        let there = arrivals
+            .iter()
+            .copied()
+            .find(|&node| metric.distance_squared(self.position(node), place) < least2);
         let reach = metric.reach(LEAST_BETWEEN_NODES * length);
-        let taken = || {
-            self.near.any_near(place, reach, |_, q| metric.distance_squared(place, q) < least2)
-        };
+        let taken =
+            || self.near.any_near(place, reach, |_, q| metric.distance_squared(place, q) < least2);
         if there.is_none() && taken() {
             return;
         }
@@ -322,6 +335,7 @@ impl Nodes {
             let from = self.position(node);
             let is_free = ends.iter().all(|&end| !self.are_close(node, end, metric))
                 && !blade.blocks_sight(from, place, step)
+                && !self.overlaps(node, place, metric)
                 && self.crossed(from, place, [node, there.unwrap_or(node)]).is_none();
             if is_free {
                 ends.push(node);

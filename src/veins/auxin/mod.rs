@@ -86,8 +86,13 @@ pub fn grow(
     for step in blade.steps() {
         let metric = blade.metric(step);
         nodes.refine(metric);
-        // Let the last veins end free.
-        let is_closing = made < closing_steps && !(stands_still && closing_steps < steps);
+        let is_closing = made < closing_steps;
+        if is_closing && stands_still {
+            // Nothing happens before the last veins, which end free.
+            made += 1;
+            nodes_after_step.push(nodes.len() as u32);
+            continue;
+        }
         if let Some(sources) = closed.take_if(|_| !is_closing) {
             open = end_free(sources, spec, blade, step, &mut nodes, &mut supply);
             supply.crowd(spec.veinlet_scale, steps - closing_steps);

@@ -5,7 +5,7 @@
 //! source, the nearer stands in the way of the farther, so at most the nearest node of each sixth of
 //! the circle is a relative neighbour. Those six are kept, each with a mark whether it is one. A new
 //! node changes them in constant time, and the nodes themselves need to be searched only when one of
-//! the sixths beside holds a nearer node that is not itself in the way.
+//! the other sixths holds a nearer node that is not itself in the way.
 //!
 //! Source: G. Toussaint, "The relative neighbourhood graph of a finite planar set", Pattern
 //! Recognition 12, 1980; the six cones are A. Yao's (SIAM J. Comput. 11, 1982). Between nodes at one
@@ -47,9 +47,7 @@ impl Around {
 
     /// The relative neighbours, each with its sixth and its squared distance.
     pub(super) fn neighbours(&self) -> impl Iterator<Item = (usize, NodeId, f64)> + '_ {
-        (0..SECTORS)
-            .filter(|&k| self.is_neighbour(k))
-            .map(|k| (k, self.nodes[k], self.near2[k]))
+        (0..SECTORS).filter(|&k| self.is_neighbour(k)).map(|k| (k, self.nodes[k], self.near2[k]))
     }
 
     fn is_neighbour(&self, k: usize) -> bool {
@@ -103,10 +101,11 @@ impl Around {
         metric: Metric,
     ) {
         let here = sector((p - s) * metric.stretch);
-        let beside = [(here + 1) % SECTORS, (here + 5) % SECTORS];
+        // What stands in the way is within 90 degrees: never in the opposite sixth.
+        let others = [1, 2, 4, 5].map(|turn| (here + turn) % SECTORS);
         let mut in_doubt = false;
         let mut shielded = false;
-        for k in beside {
+        for k in others {
             let (other2, other) = (self.near2[k], self.nodes[k]);
             if other == NONE {
                 continue;

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::extend::Nodes;
 use super::callers::Callers;
+use super::extend::Nodes;
 use crate::geometry::point_grid::PointGrid;
 use crate::geometry::scatter::PolygonScatter;
 use crate::growth::{GrowingBlade, Metric};

@@ -81,6 +81,26 @@ impl Web {
         std::iter::successors(link(first), move |&(_, next)| link(next)).map(|(node, _)| node)
     }
 
+    /// Whether an edge from `node` to `p` would lie on one that the node already has: nearer to it than
+    /// `least`, in a frame that `stretched` tells.
+    pub(super) fn overlaps(
+        &self,
+        node: NodeId,
+        p: DVec2,
+        least: f64,
+        stretched: impl Fn(DVec2) -> DVec2,
+        positions: &[DVec2],
+    ) -> bool {
+        let from = positions[node as usize];
+        let new = stretched(p - from);
+        self.beside(node).any(|other| {
+            let old = stretched(positions[other as usize] - from);
+            let longer2 = new.length_squared().max(old.length_squared());
+            let apart = new.perp_dot(old);
+            new.dot(old) > 0.0 && apart * apart < least * least * longer2
+        })
+    }
+
     pub(super) fn are_beside(&self, a: NodeId, b: NodeId) -> bool {
         self.beside(a).any(|node| node == b)
     }

@@ -8,6 +8,7 @@
 
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +20,7 @@ use crate::margin::{Margin, MarginError};
 use crate::observer::Silent;
 use crate::point_list;
 use crate::seed::{Seed, Stage};
-use crate::veins::{self, Unreached, VeinError, VeinSpec};
+use crate::veins::{self, Unreached, VeinError, VeinGraph, VeinSpec};
 
 /// Sides of the polygon that stands for the ellipse.
 const SIDES: usize = 256;
@@ -54,6 +55,8 @@ pub struct Measure {
     pub steps: u64,
     /// Time of the growth alone, without widths (s, wall clock of one thread).
     pub seconds: f64,
+    /// Seconds of the processor, which a busy machine does not stretch.
+    pub cpu_seconds: f64,
     /// Sources that were not reached, by reason.
     pub unreached: Unreached,
 }
@@ -193,24 +196,27 @@ fn measure(
     seed: Seed,
 ) -> Result<Measure, BenchmarkError> {
     let mut rng = seed.stream(Stage::AuxinSources);
-    let start = Instant::now();
-    let grown = veins::auxin::grow(spec, blade, &[root], &mut rng, &mut Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
+    let mut roots = VeinGraph::new();
+    roots.add_root(root);
+    let (wall, processor) = (Instant::now(), ThreadTime::now());
+    let grown = veins::auxin::grow(spec, blade, roots, &mut rng, &mut Silent)?;
+    let (seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),
         joins: grown.graph.joins().len(),
         steps: grown.nodes_after_step.len() as u64,
         seconds,
+        cpu_seconds,
         unreached: grown.unreached,
     })
 }
 
-/// The slope of ln `seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
+/// The slope of ln `cpu_seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
 #[must_use]
 pub fn exponent(measures: &[Measure]) -> Option<f64> {
     let points: Vec<(f64, f64)> =
-        measures.iter().map(|m| (libm::log(m.sources as f64), libm::log(m.seconds))).collect();
+        measures.iter().map(|m| (libm::log(m.sources as f64), libm::log(m.cpu_seconds))).collect();
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
@@ -331,22 +337,6 @@ pub fn run_foster(row: &FosterRow, margin: &Margin) -> Result<Measure, Benchmark
     measure(&row.veins, &blade, root, Seed(42))
 }
 
-/// A beech-like blade: ovate, pointed, 100 mm long.
-#[must_use]
-pub fn beech_like_blade() -> Margin {
-    // Half width over height: sin(π t^0.8) with a drawn-out tip, 0.3 lengths at the widest.
-    let side = |i: usize| {
-        let t = i as f64 / 60.0;
-        let half = libm::sin(std::f64::consts::PI * libm::pow(t, 0.8)) * (1.0 - 0.3 * t * t);
-        DVec2::new(0.3 * half, t) * LENGTH_MM
-    };
-    let mut outline = vec![DVec2::ZERO];
-    outline.extend((1..60).map(side));
-    outline.push(DVec2::new(0.0, LENGTH_MM));
-    outline.extend((1..60).rev().map(side).map(|p| DVec2::new(-p.x, p.y)));
-    Margin::new(outline, 60, Vec::new(), "").expect("a beech leaf is a margin")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -366,7 +356,8 @@ mod tests {
             nodes: n,
             joins: 0,
             steps: 1,
-            seconds: (n * n) as f64,
+            seconds: 1.0,
+            cpu_seconds: (n * n) as f64,
             unreached: Unreached::default(),
         };
         let found = exponent(&[measure(10), measure(100), measure(1000)]).expect("three sizes");

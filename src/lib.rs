@@ -110,3 +110,8 @@ pub mod presets;
 
 pub mod benchmark;
 pub mod io;
+
+/// The README's library calls, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -18,21 +18,30 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// How the guided veins vary.
+    Guides,
+    /// Where the particles start.
+    Particles,
     /// Where the speckles lie.
     Speckles,
     /// The fine structure of the tissue between the veins.
     Tissue,
     /// The bend of the petiole.
     Petiole,
+    /// Values dealt anew, for comparison with the order they are in.
+    Shuffle,
 }
 
 impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Guides => "stage/guides",
+            Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
             Self::Petiole => "stage/petiole",
+            Self::Shuffle => "stage/shuffle",
         }
     }
 }

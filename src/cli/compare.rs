@@ -1,33 +1,35 @@
-//! `venation compare`: growth types side by side, labelled, with their measures.
+//! `venation compare`: growth types, scatter patterns or vein algorithms side by side, labelled, with
+//! their measures.
+
+mod cases;
+mod trails;
 
 use std::path::PathBuf;
 
 use rayon::prelude::*;
 use venation::document::Document;
-use venation::growth::GrowthType;
 use venation::io;
 use venation::observer::Silent;
-use venation::pipeline::{self, Leaf};
+use venation::pipeline::{self, Grown};
 use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
+use venation::spec::LeafSpec;
 use venation::veins::metrics::VeinMetrics;
 
 use super::leaf_args::{self, LeafArgs};
 use super::{Context, Failure, seeds};
-
-/// What differs from panel to panel.
-#[derive(Debug, Clone, Copy, clap::ValueEnum)]
-enum By {
-    /// The four growth types.
-    Growth,
-}
+use cases::{By, Case};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
   venation compare beech -o growth.png
+  venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
+
+--by growth leaves out the guided veins of a preset, which look alike under every growth type;
+--set veins.guides.primary=pinnate keeps them.
 
 Measures: nodes; tips (free vein ends); sinuosity (path over chord of the primary and secondary veins,
 1 is straight); tip_step (share of the steps after which a vein is within 5 % of the apex).")]
@@ -56,15 +58,18 @@ pub(crate) struct Args {
 
 /// One leaf of the comparison.
 struct Cell {
-    growth: GrowthType,
+    case: Case,
     seed: u64,
     metrics: VeinMetrics,
-    leaf: Option<Leaf>,
+    panel: Option<Panel>,
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    let By::Growth = args.by;
-    let document = args.leaf.document(context)?;
+    let mut document = args.leaf.document(context)?;
+    // Laid veins look alike under every growth: leave the whole pattern to it, unless told otherwise.
+    if args.by == By::Growth && !args.leaf.sets("veins.guides.primary") {
+        document.set("veins.guides.primary=none", "--by growth")?;
+    }
     let seeds = match (&args.seeds, args.seed) {
         (Some(list), _) => {
             seeds::parse(list).map_err(|problem| Failure::Input(format!("--seeds: {problem}")))?
@@ -73,79 +78,81 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         (None, None) => vec![document.seed.unwrap_or(1)],
     };
     super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
-    let work: Vec<(GrowthType, u64)> =
-        seeds.iter().flat_map(|&seed| GrowthType::ALL.iter().map(move |&g| (g, seed))).collect();
-    let cells: Vec<Cell> = work
+    let cases = args.by.cases();
+    let work: Vec<(Case, u64)> =
+        seeds.iter().flat_map(|&seed| cases.iter().map(move |&case| (case, seed))).collect();
+    let mut cells: Vec<Cell> = work
         .par_iter()
-        .map(|&(growth, seed)| {
-            cell(&document, growth, seed, args.out.is_some() && seed == seeds[0])
-        })
+        .map(|&(case, seed)| cell(&document, case, seed, args.out.is_some() && seed == seeds[0]))
         .collect::<Result<_, Failure>>()?;
     if let Some(path) = &args.out {
-        let png = sheet(&cells)?;
-        super::save(path, png)?;
+        let name = leaf_args::resolve(&document, seeds[0])?.name;
+        let title = format!("{name}: {}, seed {}", args.by.title(), seeds[0]);
+        super::save(path, sheet(&title, args.by, &mut cells)?)?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if let Some(path) = &args.csv {
-        super::save(path, table(&cells).into_bytes())?;
+        super::save(path, table(args.by, &cells).into_bytes())?;
         writeln!(context.stdout, "{}", path.display())?;
     }
     if !context.quiet {
-        eprint!("{}", summary(&cells));
+        eprint!("{}", summary(args.by, &cells));
     }
     Ok(())
 }
 
-fn cell(
-    document: &Document,
-    growth: GrowthType,
-    seed: u64,
-    painted: bool,
-) -> Result<Cell, Failure> {
-    let mut document = document.clone();
-    document.set(&format!("growth.type={growth}"), "--by growth")?;
-    let spec = leaf_args::resolve(&document, seed)?;
+/// Panels are no larger than this (pixels), nor those of lines than [`LINES_PX`].
+const PANEL_PX: usize = 720;
+const LINES_PX: usize = 420;
+
+fn cell(document: &Document, case: Case, seed: u64, shown: bool) -> Result<Cell, Failure> {
+    let mut spec = leaf_args::resolve(document, seed)?;
+    case.apply(&mut spec)?;
     let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
     let metrics = VeinMetrics::of(&grown.venation, &grown.margin);
-    let leaf = painted
-        .then(|| {
-            let textures = pipeline::paint(&spec, &grown, Seed(seed), &mut Silent)?;
-            Ok::<_, Failure>(Leaf { spec, seed: Seed(seed), grown, textures })
-        })
-        .transpose()?;
-    Ok(Cell { growth, seed, metrics, leaf })
+    let panel = shown.then(|| panel(case, &spec, &grown, &metrics, seed)).transpose()?;
+    Ok(Cell { case, seed, metrics, panel })
 }
 
-fn sheet(cells: &[Cell]) -> Result<Vec<u8>, Failure> {
-    let shown = cells.iter().filter_map(|cell| Some((cell, cell.leaf.as_ref()?)));
-    let panels: Vec<Panel> = shown
-        .map(|(cell, leaf)| Panel {
-            picture: leaf.textures.front.base_colour.clone(),
-            label: cell.growth.to_string(),
-            notes: vec![
-                format!("{} nodes, {} tips", cell.metrics.nodes, cell.metrics.tips),
-                format!("sinuosity {:.3}", cell.metrics.sinuosity),
-            ],
-        })
-        .collect();
-    let Some(first) = cells.iter().find_map(|cell| cell.leaf.as_ref()) else {
+fn panel(
+    case: Case,
+    spec: &LeafSpec,
+    grown: &Grown,
+    metrics: &VeinMetrics,
+    seed: u64,
+) -> Result<Panel, Failure> {
+    let nodes = format!("{} nodes, {} tips", metrics.nodes, metrics.tips);
+    let label = case.label();
+    if let Case::Scatter(..) = case {
+        let side = (spec.texture.size_px as usize).min(LINES_PX);
+        let notes = vec![format!("{} particles", grown.venation.sources())];
+        return Ok(Panel { picture: trails::picture(grown, side), label, notes });
+    }
+    let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
+    let notes = vec![nodes, format!("sinuosity {:.3}", metrics.sinuosity)];
+    Ok(Panel { picture: textures.front.base_colour, label, notes })
+}
+
+fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
+    let panels: Vec<Panel> = cells.iter_mut().filter_map(|cell| cell.panel.take()).collect();
+    let Some(first) = panels.first() else {
         return Err(Failure::Unexpected("nothing to show".into()));
     };
-    let title = format!("{}: growth types, seed {}", first.spec.name, first.seed.0);
-    let panel_px = first.textures.front.base_colour.width().min(720);
-    let picture = montage::sheet(&title, &panels, Layout { columns: panels.len(), panel_px });
+    let panel_px = first.picture.width().min(PANEL_PX);
+    let picture = montage::sheet(title, &panels, Layout { columns: by.columns(), panel_px });
     Ok(io::image::colour_png(&picture, &io::image::Caption::default()))
 }
 
-fn table(cells: &[Cell]) -> String {
-    let mut text = String::from(
-        "growth,seed,nodes,tips,sinuosity,vein_length_mm,tip_step,unreached_sources\n",
+fn table(by: By, cells: &[Cell]) -> String {
+    let mut text = format!(
+        "{},seed,nodes,tips,sinuosity,vein_length_mm,tip_step,unreached_sources\n",
+        by.word()
     );
     for cell in cells {
         let m = &cell.metrics;
         text += &format!(
             "{},{},{},{},{:.5},{:.2},{:.4},{}\n",
-            cell.growth,
+            cell.case.label(),
             cell.seed,
             m.nodes,
             m.tips,
@@ -159,18 +166,24 @@ fn table(cells: &[Cell]) -> String {
 }
 
 /// Means over the seeds, for the person.
-fn summary(cells: &[Cell]) -> String {
+fn summary(by: By, cells: &[Cell]) -> String {
+    let width = by.cases().iter().map(|case| case.label().len() + 1).fold(12, usize::max);
     let mut text = format!(
-        "{:12} {:>7} {:>7} {:>9} {:>9}\n",
-        "growth", "nodes", "tips", "sinuosity", "tip step"
+        "{:width$} {:>7} {:>7} {:>9} {:>9}\n",
+        by.word(),
+        "nodes",
+        "tips",
+        "sinuosity",
+        "tip step"
     );
-    for &growth in GrowthType::ALL {
-        let these: Vec<&Cell> = cells.iter().filter(|cell| cell.growth == growth).collect();
+    for case in by.cases() {
+        let these: Vec<&Cell> = cells.iter().filter(|cell| cell.case == case).collect();
         let mean = |value: fn(&VeinMetrics) -> f64| {
             these.iter().map(|cell| value(&cell.metrics)).sum::<f64>() / these.len() as f64
         };
         text += &format!(
-            "{growth:12} {:>7.0} {:>7.0} {:>9.4} {:>8.0}%\n",
+            "{:width$} {:>7.0} {:>7.0} {:>9.4} {:>8.0}%\n",
+            case.label(),
             mean(|m| m.nodes as f64),
             mean(|m| m.tips as f64),
             mean(|m| m.sinuosity),

@@ -41,7 +41,7 @@ pub(crate) struct Args {
     /// Maps to write: basecolor, opacity, height, normal, bump.
     #[arg(long, value_name = "LIST", default_value = "basecolor,opacity,height,normal")]
     maps: String,
-    /// Other files to write: obj, svg, json.
+    /// Other files to write: obj, svg, json, graphml, csv.
     #[arg(long, value_name = "LIST", default_value = "obj")]
     format: String,
     /// Folder to write into [default: the leaf's name].

@@ -76,7 +76,8 @@ pub(crate) struct LeafArgs {
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
-    /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y), no darts.
+    /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
+    /// darts; they make the whole pattern: guides and smoothing are off unless --set.
     #[arg(long, value_name = "FILE.csv")]
     sources: Option<PathBuf>,
     /// Set any key: `--set veins.kill_distance_mm=0.6`, a range `0.5..0.8`, `20±10%`.
@@ -133,6 +134,11 @@ fn read_document(leaf: &str) -> Result<Document, Failure> {
 }
 
 impl LeafArgs {
+    /// Whether `--set` gives this key.
+    pub(crate) fn sets(&self, key: &str) -> bool {
+        self.set.iter().any(|assignment| assignment.split('=').next().map(str::trim) == Some(key))
+    }
+
     /// The document that the flags describe: preset or file, outline, then the flags over it.
     pub(crate) fn document(&self, context: &Context<'_>) -> Result<Document, Failure> {
         let mut document = read_document(&self.leaf)?;
@@ -151,6 +157,9 @@ impl LeafArgs {
         if let Some(path) = &self.sources {
             let points = read_sources(path)?;
             document.insert("veins.sources_mm", Value::Points(points), "--sources");
+            // Given sources make the whole pattern, as they stand: nothing laid, nothing smoothed.
+            document.set("veins.guides.primary=none", "--sources")?;
+            document.set("veins.smoothing=0", "--sources")?;
         }
         for assignment in &self.set {
             document.set(assignment, "--set")?;

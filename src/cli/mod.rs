@@ -6,6 +6,7 @@
 mod bench;
 mod compare;
 mod generate;
+mod inspect;
 mod leaf_args;
 mod presets;
 mod progress;
@@ -109,6 +110,7 @@ Examples:
   venation generate beech --outline scan.jpg -o out     grown in the outline of a scanned leaf
   venation generate linden --seeds 1-50 -o lindens      fifty different leaves
   venation compare beech -o growth.png                  growth types side by side
+  venation inspect out                                  its veins measured beside real leaves
   venation bench --auxins 1000,2000,4000,8000           time against the number of sources
   venation presets show beech > my.toml                 every setting, to edit and generate from
 
@@ -129,8 +131,10 @@ struct Cli {
 enum Command {
     /// Make leaves: textures, a card, outlines and graphs.
     Generate(Box<generate::Args>),
-    /// Growth types side by side, as one labelled picture.
+    /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
+    /// Measure a vein pattern, grown or real, beside real leaves.
+    Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
     Bench(bench::Args),
     /// List the leaves that come with venation, or show one as complete TOML.
@@ -155,6 +159,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
+        Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),
     }

@@ -84,6 +84,18 @@ pub fn segments_touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
         || (d4 == 0.0 && within(c, d, b))
 }
 
+/// Whether a polygon never turns clockwise. Straight stretches of a sampled curve turn by rounding,
+/// which is far below the tolerance.
+#[must_use]
+pub fn is_convex(polygon: &[DVec2]) -> bool {
+    let n = polygon.len();
+    let turns_left = |i: usize| {
+        let (a, b, c) = (polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]);
+        cross(a, b, c) >= -1e-12 * a.distance(b) * b.distance(c)
+    };
+    (0..n).all(turns_left)
+}
+
 /// Where the outline first touches itself, neighbours at their shared vertex excepted; `None` when
 /// it is simple. Near-linear for outlines of even edges.
 #[must_use]

@@ -148,7 +148,7 @@ impl GrowingBlade {
         let mut blade = Self {
             edges: SegmentIndex::of_polygon(margin.outline()),
             cuts,
-            convex: margin.cuts().is_empty() && is_convex(margin.outline()),
+            convex: margin.cuts().is_empty() && polygon::is_convex(margin.outline()),
             sweep,
             schedule,
             spec: spec.clone(),
@@ -332,17 +332,6 @@ impl GrowingBlade {
 /// How far inside the base a root lies, in lengths of the blade: invisible (0.1 µm in a leaf of
 /// 100 mm), yet a million times the rounding of a coordinate.
 const ROOT_INSET: f64 = 1e-6;
-
-/// Whether a polygon never turns clockwise. Straight stretches of a sampled curve turn by rounding,
-/// which is far below the tolerance.
-fn is_convex(outline: &[DVec2]) -> bool {
-    let n = outline.len();
-    let turns_left = |i: usize| {
-        let (a, b, c) = (outline[i], outline[(i + 1) % n], outline[(i + 2) % n]);
-        polygon::cross(a, b, c) >= -1e-12 * a.distance(b) * b.distance(c)
-    };
-    (0..n).all(turns_left)
-}
 
 #[cfg(test)]
 mod tests;

@@ -4,11 +4,14 @@
 //! "order", "kind"}, …], "joins": [[a, b], …]}` in leaf space: base at the origin, apex on +y.
 //! `parent` is `null` at a root; `joins` are edges that close loops and have no parent.
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::polygon;
 use crate::margin::Margin;
-use crate::veins::{NodeId, Venation};
+use crate::veins::{NodeId, VeinGraph, Venation};
 
 /// The content of a `_veins.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,7 +43,7 @@ pub struct VeinNode {
     pub radius: f64,
     /// 1 primary, 2 secondary, …
     pub order: u8,
-    /// `primary`, `secondary` or `minor`.
+    /// `primary`, `secondary`, `intersecondary`, `intramarginal`, `marginal`, `exterior` or `minor`.
     pub kind: String,
 }
 
@@ -81,6 +84,98 @@ impl VeinDocument {
             lines(&self.nodes),
             lines(&self.joins),
         )
+    }
+}
+
+/// A vein graph read from a file, fit to be measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadGraph {
+    /// Nodes and edges.
+    pub graph: VeinGraph,
+    /// Radius at each node (mm).
+    pub radii: Vec<f64>,
+    /// Order at each node, 1 primary.
+    pub orders: Vec<u8>,
+    /// The outline; empty when the file has none.
+    pub outline: Vec<DVec2>,
+}
+
+/// Coordinates and radii beyond this (mm) are no leaf, and their squares would lose their digits.
+const MOST_MM: f64 = 1e6;
+
+impl VeinDocument {
+    /// Reads a `_veins.json`.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, without its name.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|error| format!("is not a vein graph: {error}"))
+    }
+
+    /// The graph, all guarantees checked.
+    ///
+    /// # Errors
+    ///
+    /// The first number or edge that makes no sense.
+    pub fn graph(&self) -> Result<ReadGraph, String> {
+        if self.version != 1 {
+            return Err(format!("is version {} of the format; this program reads 1", self.version));
+        }
+        if self.unit != "mm" {
+            return Err(format!("has lengths in `{}`; this program reads mm", self.unit));
+        }
+        let sound = |value: f64| value.abs() <= MOST_MM;
+        let outline: Vec<DVec2> = self.margin.iter().map(|&p| DVec2::from(p)).collect();
+        if let Some(i) = outline.iter().position(|p| !sound(p.x) || !sound(p.y)) {
+            return Err(format!("margin point {i} is beyond {MOST_MM} mm"));
+        }
+        if !outline.is_empty()
+            && (outline.len() < 3 || polygon::signed_area(&outline).abs() <= f64::MIN_POSITIVE)
+        {
+            return Err("margin encloses no area".into());
+        }
+        let mut graph = VeinGraph::new();
+        for (i, node) in self.nodes.iter().enumerate() {
+            if node.id as usize != i {
+                return Err(format!("node {i} has the id {}; ids count from 0", node.id));
+            }
+            if !sound(node.x) || !sound(node.y) {
+                return Err(format!("node {i} is beyond {MOST_MM} mm"));
+            }
+            if !(node.radius > 0.0 && sound(node.radius)) {
+                return Err(format!("node {i} has the radius {}", node.radius));
+            }
+            if node.order == 0 {
+                return Err(format!("node {i} has the order 0; orders count from 1"));
+            }
+            let position = DVec2::new(node.x, node.y);
+            match node.parent {
+                None => graph.add_root(position),
+                Some(parent) if (parent as usize) < i => graph.sprout(parent, position),
+                Some(parent) => {
+                    return Err(format!("node {i} has the parent {parent}; parents come first"));
+                }
+            };
+        }
+        let mut seen = HashSet::new();
+        for (i, &[a, b]) in self.joins.iter().enumerate() {
+            let count = graph.len() as NodeId;
+            if a >= count || b >= count || a == b {
+                return Err(format!("join {i} of nodes {a} and {b} is none"));
+            }
+            let is_edge = graph.parent(a) == Some(b) || graph.parent(b) == Some(a);
+            if is_edge || !seen.insert((a.min(b), a.max(b))) {
+                return Err(format!("join {i} repeats the edge from {a} to {b}"));
+            }
+            graph.join(a, b);
+        }
+        if graph.edges().next().is_none() {
+            return Err("has no veins".into());
+        }
+        let radii = self.nodes.iter().map(|node| node.radius).collect();
+        let orders = self.nodes.iter().map(|node| node.order).collect();
+        Ok(ReadGraph { graph, radii, orders, outline })
     }
 }
 

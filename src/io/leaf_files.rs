@@ -5,7 +5,9 @@ use sha2::{Digest, Sha256};
 
 use super::image::{Caption, MapKind};
 use super::manifest::{FileRecord, Manifest, SideMapping};
-use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE, file_stem, graph, obj, svg};
+use super::tables::Table;
+use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
+use super::{file_stem, graph, graphml, obj, svg};
 use crate::margin::Margin;
 use crate::seed::Seed;
 use crate::texture::TextureSet;
@@ -74,6 +76,8 @@ enum Content {
     Materials,
     Drawing,
     Graph,
+    GraphMl,
+    Table(Table),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +104,14 @@ fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String,
             }
             FormatKind::Svg => entries.push((format!("{stem}.svg"), Content::Drawing)),
             FormatKind::Json => entries.push((format!("{stem}_veins.json"), Content::Graph)),
+            FormatKind::GraphMl => {
+                entries.push((format!("{stem}_veins.graphml"), Content::GraphMl));
+            }
+            FormatKind::Csv => entries.extend(
+                Table::ALL
+                    .iter()
+                    .map(|&table| (format!("{stem}_{}.csv", table.word()), Content::Table(table))),
+            ),
         }
     }
     entries
@@ -131,6 +143,8 @@ impl Content {
             Self::Materials => card.mtl().into(),
             Self::Drawing => svg::svg(leaf.shown_name(), leaf.margin, leaf.venation, frame).into(),
             Self::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
+            Self::GraphMl => graphml::graphml(leaf.venation).into(),
+            Self::Table(table) => table.csv(leaf.margin, leaf.venation).into(),
         }
     }
 
@@ -144,6 +158,8 @@ impl Content {
             Self::Materials => "materials of the card",
             Self::Drawing => "outline and veins in mm, a layer for every order",
             Self::Graph => "vein graph in mm: nodes with parent, radius and order",
+            Self::GraphMl => "vein graph in mm for graph programs, loops included",
+            Self::Table(table) => table.meaning(),
         }
     }
 

@@ -5,12 +5,16 @@
 //! will write.
 
 pub mod graph;
+pub mod graphml;
 pub mod image;
 mod leaf_files;
 pub mod manifest;
+pub mod mask;
+pub mod network;
 pub mod obj;
 pub mod outline;
 pub mod svg;
+pub mod tables;
 pub mod write;
 
 use std::path::{Path, PathBuf};
@@ -37,6 +41,10 @@ words! {
         Svg = "svg",
         /// The vein graph.
         Json = "json",
+        /// The vein graph for networkx, Gephi, igraph.
+        GraphMl = "graphml",
+        /// Tables of nodes, edges and areoles.
+        Csv = "csv",
     }
 }
 

@@ -9,6 +9,7 @@ pub mod distance;
 pub mod draw;
 pub mod flood_fill;
 pub mod montage;
+pub mod skeleton;
 pub mod smooth;
 pub mod thinning;
 pub mod threshold;

@@ -6,7 +6,7 @@ use super::Grid;
 use crate::geometry::{DVec2, polygon};
 
 /// The eight neighbours, clockwise from the one above.
-const AROUND: [(isize, isize); 8] =
+pub(super) const AROUND: [(isize, isize); 8] =
     [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
 
 /// The centre lines of the strokes of `mask`, from ends and forks to ends and forks, at least
@@ -98,30 +98,63 @@ fn simplify(line: &[DVec2], tolerance: f64, kept: &mut Vec<DVec2>) {
 }
 
 /// The mask thinned to lines one pixel wide, as connected as before.
-fn thinned(mask: &Grid<bool>) -> Grid<bool> {
+#[must_use]
+pub fn thinned(mask: &Grid<bool>) -> Grid<bool> {
     let mut thin = mask.clone();
     let (width, height) = (mask.width(), mask.height());
-    let mut left: Vec<(usize, usize)> =
-        (0..width * height).filter(|&i| mask.values()[i]).map(|i| (i % width, i / width)).collect();
-    loop {
-        let before = left.len();
-        for pass in 0..2 {
-            let goes: Vec<(usize, usize)> =
-                left.iter().copied().filter(|&p| removable(&thin, p, pass)).collect();
-            for &p in &goes {
-                thin[p] = false;
+    let removable = [0, 1].map(|pass| std::array::from_fn(|code| is_removable(code, pass)));
+    let all: Vec<u32> =
+        (0..width * height).filter(|&i| mask.values()[i]).map(|i| i as u32).collect();
+    // A pass judges a pixel as it did last time unless a neighbour went since, in the last pass or
+    // the one before: only those are looked at again.
+    let mut gone: [Vec<u32>; 2] = [Vec::new(), Vec::new()];
+    let mut looked_at = Grid::filled(width, height, 0u32);
+    for turn in 0.. {
+        let table: &[bool; 256] = &removable[turn as usize % 2];
+        let goes = |&i: &u32| table[surroundings(&thin, i as usize)];
+        let goes: Vec<u32> = if turn < 2 {
+            all.iter().copied().filter(|i| thin.values()[*i as usize] && goes(i)).collect()
+        } else {
+            let mut again = Vec::new();
+            for &i in gone.iter().flatten() {
+                let (x, y) = ((i as usize % width) as isize, (i as usize / width) as isize);
+                for (dx, dy) in AROUND {
+                    if thin.get(x + dx, y + dy) == Some(&true) {
+                        let next = (y + dy) as usize * width + (x + dx) as usize;
+                        if std::mem::replace(&mut looked_at.values_mut()[next], turn) != turn {
+                            again.push(next as u32);
+                        }
+                    }
+                }
             }
-            left.retain(|&p| thin[p]);
-        }
-        if left.len() == before {
-            return thin;
+            again.into_iter().filter(goes).collect()
+        };
+        goes.iter().for_each(|&i| thin.values_mut()[i as usize] = false);
+        gone[turn as usize % 2] = goes;
+        if turn > 0 && gone.iter().all(Vec::is_empty) {
+            break;
         }
     }
+    thin
 }
 
-fn removable(thin: &Grid<bool>, (x, y): (usize, usize), pass: usize) -> bool {
-    let p =
-        AROUND.map(|(dx, dy)| thin.get(x as isize + dx, y as isize + dy).copied().unwrap_or(false));
+/// Which of the eight neighbours are set, a bit for each, clockwise from the one above.
+fn surroundings(thin: &Grid<bool>, i: usize) -> usize {
+    let (width, height) = (thin.width(), thin.height());
+    let (x, y) = (i % width, i / width);
+    if x > 0 && y > 0 && x + 1 < width && y + 1 < height {
+        let values = thin.values();
+        let (up, down) = (i - width, i + width);
+        let at = [up, up + 1, i + 1, down + 1, down, down - 1, i - 1, up - 1];
+        return at.iter().rev().fold(0, |code, &j| code * 2 + usize::from(values[j]));
+    }
+    AROUND.iter().rev().fold(0, |code, (dx, dy)| {
+        code * 2 + usize::from(thin.get(x as isize + dx, y as isize + dy) == Some(&true))
+    })
+}
+
+fn is_removable(code: usize, pass: usize) -> bool {
+    let p: [bool; 8] = std::array::from_fn(|k| code >> k & 1 == 1);
     let count = p.iter().filter(|&&on| on).count();
     let rises = (0..8).filter(|&k| !p[k] && p[(k + 1) % 8]).count();
     let [above, _, right, _, below, _, left, _] = p;

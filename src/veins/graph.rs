@@ -15,9 +15,26 @@ words! {
         Primary = "primary",
         /// Branches of the primary veins.
         Secondary = "secondary",
+        /// Between two secondaries, like them but shorter and finer.
+        Intersecondary = "intersecondary",
+        /// Along the margin, at some distance; the secondaries end in it.
+        Intramarginal = "intramarginal",
+        /// On the margin itself.
+        Marginal = "marginal",
+        /// Outside the secondaries: small arches between them, and branches to the teeth.
+        Exterior = "exterior",
         /// Every finer vein.
         Minor = "minor",
     }
+}
+
+/// Order and kind of a vein that were decided where it was laid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rank {
+    /// 1 primary, 2 secondary, …
+    pub order: u8,
+    /// What it is.
+    pub kind: VeinKind,
 }
 
 /// Nodes and edges of a vein pattern, in leaf space (mm).
@@ -28,12 +45,15 @@ words! {
 ///   petiole.
 /// - No two nodes at one position.
 /// - Joins name two different existing nodes, neither the parent of the other.
+/// - A node with a rank grows out of one with a rank of no higher order.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct VeinGraph {
     positions: Vec<DVec2>,
     /// The parent of each node; a root is its own parent.
     parents: Vec<NodeId>,
     joins: Vec<(NodeId, NodeId)>,
+    /// The ranks that were given, by node; nodes past the end have none.
+    ranks: Vec<Option<Rank>>,
 }
 
 impl VeinGraph {
@@ -74,6 +94,27 @@ impl VeinGraph {
     /// Records that the veins at `a` and `b` have met.
     pub fn join(&mut self, a: NodeId, b: NodeId) {
         self.joins.push((a, b));
+    }
+
+    /// Decides what vein a node belongs to.
+    pub fn set_rank(&mut self, node: NodeId, rank: Rank) {
+        let needed = node as usize + 1;
+        if self.ranks.len() < needed {
+            self.ranks.resize(needed, None);
+        }
+        self.ranks[node as usize] = Some(rank);
+    }
+
+    /// What vein a node belongs to, where that was decided before it grew.
+    #[must_use]
+    pub fn rank(&self, node: NodeId) -> Option<Rank> {
+        self.ranks.get(node as usize).copied().flatten()
+    }
+
+    /// The highest order that was given; 0 when none was.
+    #[must_use]
+    pub fn highest_rank(&self) -> u8 {
+        self.ranks.iter().flatten().map(|rank| rank.order).max().unwrap_or(0)
     }
 
     /// Number of nodes.
@@ -136,6 +177,12 @@ impl VeinGraph {
         sorted.sort_unstable();
         if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
             return Some("two nodes at one position".into());
+        }
+        let order = |node: NodeId| self.rank(node).map_or(u8::MAX, |rank| rank.order);
+        if let Some((_, node)) =
+            self.edges().find(|&(p, c)| self.rank(c).is_some() && order(p) > order(c))
+        {
+            return Some(format!("node {node} has a rank, and its parent none or a higher one"));
         }
         let n = self.len() as NodeId;
         self.joins

@@ -5,8 +5,11 @@
 
 pub mod auxin;
 pub mod graph;
+pub mod guides;
 pub mod metrics;
 pub mod orders;
+pub mod particles;
+pub mod smooth;
 pub mod widths;
 
 use glam::DVec2;
@@ -17,7 +20,9 @@ use crate::margin::Margin;
 use crate::observer::Observer;
 use crate::parameter::{Kind, Parameters, parameters, words};
 use crate::seed::{Seed, Stage};
-pub use graph::{NodeId, VeinGraph, VeinKind};
+pub use graph::{NodeId, Rank, VeinGraph, VeinKind};
+use guides::GuideSpec;
+use particles::ParticleSpec;
 
 words! {
     /// How veins are made.
@@ -27,6 +32,8 @@ words! {
         /// Veins grow towards auxin sources and meet there, so that loops close (Runions et al. 2005,
         /// closed venation).
         AuxinClosed = "auxin-closed",
+        /// Veins are the trails of particles that flow to the petiole (Rodkaew et al. 2002).
+        Particles = "particles",
     }
 }
 
@@ -59,6 +66,12 @@ parameters! {
         tip_radius_mm: number(0.03, 0.0001..=10.0, "mm"),
         /// Murray's exponent: the parent's radius to this power is the sum over its children.
         murray_exponent: number(3.0, 1.0..=10.0, ""),
+        /// How far kinks of grown veins are drawn straight; above 0 long segments become curves too.
+        smoothing: number(0.0, 0.0..=1.0, ""),
+        /// Veins that are laid before auxin takes over.
+        guides: group(GuideSpec, GuideSpec::default()),
+        /// Particles, for `algorithm = "particles"`.
+        particles: group(ParticleSpec, ParticleSpec::default()),
     }
 }
 
@@ -158,6 +171,9 @@ impl Venation {
     /// What part of the pattern a node belongs to.
     #[must_use]
     pub fn kind(&self, node: NodeId) -> VeinKind {
+        if let Some(rank) = self.graph.rank(node) {
+            return rank.kind;
+        }
         match self.orders[node as usize] {
             0 | 1 => VeinKind::Primary,
             2 => VeinKind::Secondary,
@@ -165,7 +181,8 @@ impl Venation {
         }
     }
 
-    /// How many nodes there were after each step; nodes are numbered as they grew.
+    /// How many nodes there were after each step; nodes are numbered as they grew. Guided veins are
+    /// there from the first step on.
     #[must_use]
     pub fn nodes_after_step(&self) -> &[u32] {
         &self.nodes_after_step
@@ -227,7 +244,7 @@ pub fn grow(
 }
 
 /// The same from any roots, in the frame of the mature leaf; those outside the first blade grow
-/// nothing.
+/// nothing. Guides start at the base of the blade whatever the roots.
 ///
 /// # Errors
 ///
@@ -240,26 +257,56 @@ pub fn grow_from(
     observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
     check(spec)?;
+    let mut start = guides::build(spec, blade, &mut seed.stream(Stage::Guides));
+    for &root in roots {
+        let taken = start.positions().contains(&root);
+        if !taken && blade.is_inside(root, *blade.steps().start()) {
+            start.add_root(root);
+        }
+    }
     let grown = match spec.algorithm {
         Algorithm::AuxinOpen | Algorithm::AuxinClosed => {
-            auxin::grow(spec, blade, roots, &mut seed.stream(Stage::AuxinSources), observer)?
+            auxin::grow(spec, blade, start, &mut seed.stream(Stage::AuxinSources), observer)?
         }
+        Algorithm::Particles => return flow(spec, blade, roots, seed, observer),
     };
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
+    let smooth::Smoothed { graph, nodes_after_step } =
+        smooth::smoothed(spec, blade.finished(), graph, grown.nodes_after_step);
     let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
     let orders = orders::by_width(&graph, &radii);
     Ok(Venation {
         graph,
         radii,
         orders,
-        nodes_after_step: grown.nodes_after_step,
+        nodes_after_step,
         sources: grown.sources,
         unreached: grown.unreached,
     })
 }
 
+/// Veins as the trails of particles in the finished blade.
+fn flow(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    roots: &[DVec2],
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Venation, VeinError> {
+    let roots: Vec<DVec2> = roots.iter().map(|&p| blade.finished_from_mature(p)).collect();
+    let mut rng = seed.stream(Stage::Particles);
+    let flowed = particles::grow(&spec.particles, blade.finished(), &roots, &mut rng, observer)?;
+    // Every tip is one particle: Murray's law on tips is his law on energy.
+    let tip =
+        widths::radius(spec.tip_radius_mm, spec.particles.initial_energy, spec.murray_exponent);
+    let radii = widths::murray(&flowed.graph, tip, spec.murray_exponent);
+    let orders = orders::by_width(&flowed.graph, &radii);
+    Ok(Venation { sources: flowed.particles, ..Venation::new(flowed.graph, radii, orders) })
+}
+
 /// Refuses settings under which growth would make no sense or never end.
 fn check(spec: &VeinSpec) -> Result<(), VeinError> {
+    particles::check(&spec.particles)?;
     let defaults = VeinSpec::parameters();
     let value = |key: &str| match key {
         "spawn_rate" => spec.spawn_rate,
@@ -271,16 +318,22 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         "tip_radius_mm" => spec.tip_radius_mm,
         "closing_share" => spec.closing_share,
         "veinlet_scale" => spec.veinlet_scale,
+        "smoothing" => spec.smoothing,
         _ => spec.murray_exponent,
     };
     for parameter in &defaults {
         let Kind::Number { min, max, .. } = parameter.kind else { continue };
+        if parameter.key.contains('.') {
+            // Groups check their own.
+            continue;
+        }
         let value = value(&parameter.key);
         if !(min..=max).contains(&value) {
             let key = format!("veins.{}", parameter.key);
             return Err(VeinError::setting(key, value, format!("must be from {min} to {max}")));
         }
     }
+    guides::check(&spec.guides)?;
     // A vein steps over a source that is nearer than its step; half a step beyond, it must count as
     // reached, or the vein would turn round for ever.
     let least = spec.node_step_mm / 2.0;

@@ -3,7 +3,8 @@
 //! Leaf architecture ranks veins by width where they leave their parent vein (Manual of Leaf
 //! Architecture, 2009): at a fork the widest child carries the vein on and keeps its order, every
 //! other begins a vein of the next order. Between children of (nearly) one width the straighter one
-//! carries on.
+//! carries on. Orders that were given (guided veins) stay; what grows out of such a vein begins at the
+//! order after the highest that was given.
 
 use super::graph::{NodeId, VeinGraph};
 
@@ -30,7 +31,15 @@ pub fn by_width(graph: &VeinGraph, radii: &[f64]) -> Vec<u8> {
         std::iter::successors(entry(first[node as usize]), move |&id| entry(next[id as usize]))
     };
     let mut orders = vec![1u8; n];
+    let first_free = (graph.highest_rank() + 1).min(HIGHEST_ORDER);
     for node in 0..n as NodeId {
+        if let Some(rank) = graph.rank(node) {
+            orders[node as usize] = rank.order;
+            for child in children(node) {
+                orders[child as usize] = first_free;
+            }
+            continue;
+        }
         let Some(main) = main_child(graph, radii, node, children(node)) else { continue };
         for child in children(node) {
             let order = orders[node as usize];

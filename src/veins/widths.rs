@@ -20,7 +20,13 @@ pub fn murray(graph: &VeinGraph, tip_radius_mm: f64, exponent: f64) -> Vec<f64> 
             flow[parent as usize] += flow[node];
         }
     }
-    flow.into_iter().map(|flow| tip_radius_mm * root(flow, exponent)).collect()
+    flow.into_iter().map(|flow| radius(tip_radius_mm, flow, exponent)).collect()
+}
+
+/// Radius of a vein that carries the flow of so many tips (mm).
+#[must_use]
+pub fn radius(tip_radius_mm: f64, tips: f64, exponent: f64) -> f64 {
+    tip_radius_mm * root(tips, exponent)
 }
 
 /// The `exponent`-th root. `libm` gives the same bits on every machine; it is monotone enough for a

@@ -158,6 +158,8 @@ fn given_sources_are_all_the_sources_there_are() {
         "out",
         "--format",
         "json",
+        "--set",
+        "veins.guides.primary=none",
     ]);
     succeed(folder.path(), &arguments);
     let text =
@@ -274,6 +276,21 @@ fn compare_writes_a_sheet_and_a_table() {
 }
 
 #[test]
+fn compare_shows_scatter_patterns_by_spacing_and_algorithms() {
+    let folder = fresh();
+    let by = |word| ["compare", "lilac", "--by", word, "--csv", "t.csv", "-o", "s.png", "--force"];
+    succeed(folder.path(), &small(&by("scatter")));
+    let table = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    assert!(table.starts_with("scatter,seed,nodes,"), "{table}");
+    let row = |i: usize| table.lines().nth(i).unwrap_or_default();
+    assert!(row(1).starts_with("square 3 px,") && row(16).starts_with("random 10 px,"), "{table}");
+    assert_eq!(row(16).split(',').nth(3), Some("125"));
+    succeed(folder.path(), &small(&by("algorithm")));
+    let table = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
+    assert!(table.contains("\nauxin-open,") && table.contains("\nparticles,"), "{table}");
+}
+
+#[test]
 fn bench_prints_a_table_and_the_exponent() {
     let folder = fresh();
     let out = succeed(
@@ -283,4 +300,39 @@ fn bench_prints_a_table_and_the_exponent() {
     assert!(out.contains("exponent"), "{out}");
     let table = std::fs::read_to_string(folder.path().join("b.csv")).unwrap();
     assert_eq!(table.lines().count(), 4, "{table}");
+}
+
+#[test]
+fn a_killed_run_leaves_whole_files_and_goes_on_where_it_stopped() {
+    let folder = fresh();
+    let arguments = small(&["generate", "beech", "--seeds", "1-60", "-t", "1"]);
+    let killed = [&arguments[..], &["-o", "killed", "--skip-existing"]].concat();
+    let program = assert_cmd::cargo::cargo_bin("venation");
+    let mut child = std::process::Command::new(program)
+        .current_dir(folder.path())
+        .args(&killed)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    // Wait until some leaf is being written, then pull the plug.
+    let out = folder.path().join("killed");
+    while child.try_wait().unwrap().is_none() && !out.exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    for (name, bytes) in contents(&out) {
+        if name.extension().is_some_and(|e| e == "png") {
+            assert!(bytes.ends_with(b"IEND\xaeB`\x82"), "{} is cut off", name.display());
+        }
+    }
+    succeed(folder.path(), &killed);
+    succeed(folder.path(), &[&arguments[..], &["-o", "whole"]].concat());
+    let finished = |name: &str| {
+        let mut files = contents(&folder.path().join(name));
+        // What the killed run was in the middle of writing keeps its temporary name.
+        files.retain(|path, _| !path.to_string_lossy().contains(".venation"));
+        files
+    };
+    assert!(finished("killed") == finished("whole"));
 }

@@ -24,7 +24,9 @@ fn closed_venation_agrees_with_the_obvious_one_node_by_node() {
         let spec = &closed(spec, seed);
         let (root, darts) = (blade.root(), || Seed(seed).stream(Stage::AuxinSources));
         let slow = reference::grow(spec, blade, root, &mut darts(), Frame::Mature, usize::MAX);
-        let fast = auxin::grow(spec, blade, &[root], &mut darts(), &mut Silent).expect(name);
+        let mut bare = VeinGraph::new();
+        bare.add_root(root);
+        let fast = auxin::grow(spec, blade, bare, &mut darts(), &mut Silent).expect(name);
         for (id, &p) in fast.graph.positions().iter().enumerate().take(slow.positions.len()) {
             let parent = fast.graph.parent(id as u32).map(|parent| parent as usize);
             assert_eq!(parent, slow.parents[id], "{name}: node {id}");

@@ -167,7 +167,7 @@ fn golden_relief_of_both_sides() {
 
 #[test]
 fn golden_leaf_in_a_real_outline() {
-    let leaf = leaf(&in_outline("magnolia", "Passiflora_alata_1_8.png", &[]), 1, 768);
+    let leaf = leaf(&in_outline("lilac", "Passiflora_alata_1_8.png", &[]), 1, 768);
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines");
     let scan = read(&fixtures.join("Passiflora_alata_1_8.png")).expect("the fixture");
     let (front, back) = (&leaf.textures.front, &leaf.textures.back);
@@ -211,4 +211,16 @@ fn golden_growth_types() {
         })
         .collect();
     compare("readme_growth", &sheet("growth types, seen from below", &panels, 4, 384));
+}
+
+#[test]
+fn golden_guided_veins() {
+    let leaf = leaf(&document("beech", &[]), 1, 1024);
+    let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let panels = [
+        panel(front.base_colour.clone(), "front"),
+        panel(back.base_colour.clone(), "back"),
+        panel(normals(back), "back, normal"),
+    ];
+    compare("readme_guides", &sheet("", &panels, 3, 480));
 }

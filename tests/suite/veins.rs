@@ -106,7 +106,9 @@ fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
     for_all_cases(8, |name, blade, spec, seed| {
         let (root, darts) = (blade.root(), || Seed(seed).stream(Stage::AuxinSources));
         let slow = reference::grow(spec, blade, root, &mut darts(), Frame::Mature, usize::MAX);
-        let fast = auxin::grow(spec, blade, &[root], &mut darts(), &mut Silent).expect(name);
+        let mut bare = veins::VeinGraph::new();
+        bare.add_root(root);
+        let fast = auxin::grow(spec, blade, bare, &mut darts(), &mut Silent).expect(name);
         assert_eq!(fast.graph.len(), slow.positions.len(), "{name}");
         for (id, &p) in fast.graph.positions().iter().enumerate() {
             let parent = fast.graph.parent(id as u32).map(|parent| parent as usize);
@@ -201,6 +203,12 @@ fn impossible_settings_are_errors_that_name_the_key() {
     assert!(small.contains("veins.kill_distance_mm = 0.1") && small.contains("0.15"), "{small}");
     let many = error(&|spec| spec.spawn_rate = 100_000.0);
     assert!(many.contains("veins.spawn_rate"), "{many}");
+    let crowded = error(&|spec| {
+        (spec.spawn_rate, spec.source_spawn_distance_mm) = (20_000.0, 0.0);
+        (spec.vein_spawn_distance_mm, spec.attraction_distance_mm) = (0.0, 5.0);
+        (spec.node_step_mm, spec.kill_distance_mm) = (2.0, 1.0);
+    });
+    assert!(crowded.contains("spawn distance"), "{crowded}");
     let nan = error(&|spec| spec.sources_mm = vec![[1.0, 50.0], [f64::NAN, 2.0]]);
     assert!(nan.contains("veins.sources_mm"), "{nan}");
     let thin = error(&|spec| spec.tip_radius_mm = 0.0);

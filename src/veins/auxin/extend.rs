@@ -57,7 +57,7 @@ impl Nodes {
     pub(super) fn new(
         spec: &VeinSpec,
         blade: &GrowingBlade,
-        roots: &[DVec2],
+        start: VeinGraph,
         metric: Metric,
         meeting: Meeting,
     ) -> Self {
@@ -71,7 +71,7 @@ impl Nodes {
         let cell = |mm: f64| metric.reach(metric.length(mm)).max_element();
         let web = (meeting == Meeting::Join).then(|| Web::new(bounds, cell(step_mm)));
         let mut nodes = Self {
-            graph: VeinGraph::new(),
+            graph: start,
             near: PointGrid::new(bounds, cell(step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
@@ -80,13 +80,13 @@ impl Nodes {
             web,
             meeting,
         };
-        for &root in roots {
-            let taken = nodes.graph.positions().contains(&root);
-            if !taken && blade.is_inside(root, *blade.steps().start()) {
-                nodes.graph.add_root(root);
-                nodes.near.push(root);
-                nodes.far.push(root);
-            }
+        for &node in nodes.graph.positions() {
+            nodes.near.push(node);
+            nodes.far.push(node);
+        }
+        if let Some(web) = &mut nodes.web {
+            let edges = nodes.graph.edges().chain(nodes.graph.joins().iter().copied());
+            edges.for_each(|edge| web.add(edge, nodes.graph.positions()));
         }
         nodes
     }

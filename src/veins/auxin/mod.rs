@@ -23,11 +23,9 @@ mod sources;
 mod tiles;
 mod web;
 
-use glam::DVec2;
-
 use super::graph::VeinGraph;
 use super::{Algorithm, Unreached, VeinError, VeinSpec};
-use crate::growth::{GrowingBlade, GrowthType};
+use crate::growth::{GrowingBlade, GrowthType, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
 use callers::Callers;
@@ -52,7 +50,16 @@ pub struct Grown {
 /// million.
 const MAX_NODES: usize = 10_000_000;
 
-/// Grows open or closed venation from `roots` (in the frame of the mature leaf).
+/// How many nodes the blade can hold before they stand closer than a quarter of a step everywhere,
+/// as children of one node never do. Without this limit a shower of darts with no least distances
+/// lets veins double in every step, until millions of nodes stand in one place.
+fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
+    let step = metric.reach(metric.length(spec.node_step_mm));
+    10_000.0 + 16.0 * blade.mature().area_mm2() / step.element_product()
+}
+
+/// Grows open or closed venation from the veins of `start` (in the frame of the mature leaf): bare
+/// roots, or guides, which are there from the first step on.
 ///
 /// # Errors
 ///
@@ -60,7 +67,7 @@ const MAX_NODES: usize = 10_000_000;
 pub fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
-    roots: &[DVec2],
+    start: VeinGraph,
     rng: &mut Rng,
     observer: &mut dyn Observer,
 ) -> Result<Grown, VeinError> {
@@ -71,7 +78,7 @@ pub fn grow(
     let mut supply = Supply::new(spec, blade, closing_steps)?;
     let first = *blade.steps().start();
     let meeting = if is_closed { Meeting::Join } else { Meeting::Stop };
-    let mut nodes = Nodes::new(spec, blade, roots, blade.metric(first), meeting);
+    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first), meeting);
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
@@ -111,9 +118,9 @@ pub fn grow(
         for node in called {
             nodes.extend(node, calls, blade, step, metric);
         }
-        if nodes.len() > MAX_NODES {
-            let problem =
-                format!("makes more than {MAX_NODES} vein nodes; raise it, or throw fewer darts");
+        if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
+            let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
+                           throw fewer darts";
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));
         }
         // Let the new nodes take sources over, and remove those that have been reached.

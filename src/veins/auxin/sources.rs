@@ -14,6 +14,10 @@ use crate::veins::{VeinError, VeinSpec};
 /// costs about a tenth of a microsecond.
 const MAX_DARTS: f64 = 3e7;
 
+/// More sources than this are a slip of the keyboard, mostly a spacing of zero: they take a few
+/// hundred megabytes.
+const MAX_SOURCES: usize = 4_000_000;
+
 /// The sources still to come.
 pub(super) struct Supply<'a> {
     blade: &'a GrowingBlade,
@@ -104,6 +108,7 @@ impl<'a> Supply<'a> {
                     self.spaced.push(p);
                     self.wait_for(p);
                 }
+                self.check_number()?;
             }
         }
         if !self.is_sorted {
@@ -129,10 +134,19 @@ impl<'a> Supply<'a> {
                     self.spaced.push(p);
                     calls.add(p, nodes, metric);
                 }
+                self.check_number()?;
             }
         }
         calls.keep_index();
         Ok(())
+    }
+
+    fn check_number(&self) -> Result<(), VeinError> {
+        if self.spaced.len() <= MAX_SOURCES {
+            return Ok(());
+        }
+        let problem = format!("leaves room for more than {MAX_SOURCES} sources; raise it");
+        Err(VeinError::setting("veins.source_spawn_distance_mm", self.spacing_mm, problem))
     }
 
     /// One dart; nothing when it falls too near to a source or a vein.

@@ -3,7 +3,7 @@
 //!
 //! Without a reach every source acts from the first step on, and asking each in every step whether
 //! one of the new nodes is nearer costs O(sources · steps). Most new nodes are far from most sources:
-//! one question for each tile of some thirty sources answers for all of them.
+//! two questions for each tile of some sixteen sources answer for all of them.
 
 use glam::DVec2;
 
@@ -12,7 +12,7 @@ use crate::geometry::point_index::PointIndex;
 use crate::growth::Metric;
 
 /// Sources in a tile, about: fewer make more questions, more make the answers vaguer.
-const IN_A_TILE: f64 = 32.0;
+const IN_A_TILE: f64 = 16.0;
 
 /// Tiles are cut anew when the number of sources has changed by this factor.
 const DRIFT: usize = 3;

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::{NodeId, Venation};
 use crate::margin::Margin;
+use crate::veins::{NodeId, Venation};
 
 /// Measures of one vein pattern.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,107 @@
+//! What differs from panel to panel: one case each, in the order of the sheet.
+
+use venation::error::Error;
+use venation::growth::GrowthType;
+use venation::margin;
+use venation::spec::LeafSpec;
+use venation::veins::Algorithm;
+use venation::veins::particles::patterns::Pattern;
+
+/// What differs from panel to panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum By {
+    /// The four growth types.
+    Growth,
+    /// Particles: the four scatter patterns × spacings of 3, 5, 7 and 10 pixels (Rodkaew 2002, fig. 9).
+    Scatter,
+    /// The vein algorithms.
+    Algorithm,
+}
+
+/// What one panel shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Case {
+    Growth(GrowthType),
+    Scatter(Pattern, u64),
+    Algorithm(Algorithm),
+}
+
+/// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
+const SCATTERS: [(u64, u64); 4] = [(3, 1378), (5, 500), (7, 254), (10, 125)];
+
+/// The area of the paper's ivy (pixels²): its counts times its spacings².
+const IVY_PX2: f64 = 12_450.0;
+
+/// The paper's step and merge radius (pixels).
+const STEP_PX: f64 = 1.0;
+const MERGE_PX: f64 = 2.0;
+
+impl By {
+    /// The word for it in titles and tables.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Growth => "growth",
+            Self::Scatter => "scatter",
+            Self::Algorithm => "algorithm",
+        }
+    }
+
+    pub(super) fn title(self) -> &'static str {
+        match self {
+            Self::Growth => "growth types",
+            Self::Scatter => "particles by scatter pattern and spacing",
+            Self::Algorithm => "vein algorithms",
+        }
+    }
+
+    pub(super) fn cases(self) -> Vec<Case> {
+        match self {
+            Self::Growth => GrowthType::ALL.iter().map(|&growth| Case::Growth(growth)).collect(),
+            Self::Scatter => SCATTERS
+                .iter()
+                .flat_map(|&(px, _)| Pattern::ALL.iter().map(move |&p| Case::Scatter(p, px)))
+                .collect(),
+            Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
+        }
+    }
+
+    /// Panels in a row of the sheet.
+    pub(super) fn columns(self) -> usize {
+        match self {
+            Self::Scatter => Pattern::ALL.len(),
+            Self::Growth | Self::Algorithm => self.cases().len(),
+        }
+    }
+}
+
+impl Case {
+    pub(super) fn label(self) -> String {
+        match self {
+            Self::Growth(growth) => growth.to_string(),
+            Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
+            Self::Algorithm(algorithm) => algorithm.to_string(),
+        }
+    }
+
+    /// Makes a leaf the one of this case.
+    pub(super) fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
+        match self {
+            Self::Growth(growth) => spec.growth.r#type = growth,
+            Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
+            Self::Scatter(pattern, px) => {
+                // The paper's pixel: that in which this blade is as large as its ivy.
+                let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();
+                spec.veins.algorithm = Algorithm::Particles;
+                let particles = &mut spec.veins.particles;
+                particles.pattern = pattern;
+                particles.spacing_mm = px as f64 * pixel;
+                let given = SCATTERS.iter().find(|(spacing, _)| *spacing == px);
+                let random = pattern == Pattern::Random;
+                particles.count = given.map_or(0, |&(_, count)| if random { count } else { 0 });
+                particles.step_mm = STEP_PX * pixel;
+                particles.merge_radius_mm = MERGE_PX * pixel;
+            }
+        }
+        Ok(())
+    }
+}

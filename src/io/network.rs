@@ -1,0 +1,117 @@
+//! A network to measure, from whatever holds one: the folder of a leaf, a vein graph, a picture.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::graph::VeinDocument;
+use super::mask;
+use crate::veins::metrics::measures::Unit;
+use crate::veins::metrics::{Network, picture};
+
+/// A network and where it comes from.
+#[derive(Debug, Clone)]
+pub struct ReadNetwork {
+    /// The veins.
+    pub network: Network,
+    /// Unit of their lengths.
+    pub unit: Unit,
+    /// The file that was read.
+    pub path: PathBuf,
+    /// Side of a pixel, in the unit, for a network from a picture.
+    pub pixel: Option<f64>,
+    /// What the reader should know.
+    pub notes: Vec<String>,
+}
+
+/// Why a network could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct NetworkError {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub problem: String,
+}
+
+/// What the files of vein graphs end in.
+const GRAPH_ENDING: &str = "_veins.json";
+
+/// Vein graphs may have this many bytes: some ten million nodes.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Reads a leaf folder with a `NAME_veins.json`, such a file, or a black-and-white picture; a
+/// picture has lengths in pixels unless it is known how many go to the millimetre.
+///
+/// # Errors
+///
+/// [`NetworkError`] names the file and what is wrong with it.
+pub fn read(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, NetworkError> {
+    let error = |path: &Path, problem: String| NetworkError { path: path.to_owned(), problem };
+    let path = if path.is_dir() {
+        graph_in(path).map_err(|problem| error(path, problem))?
+    } else {
+        path.to_owned()
+    };
+    let problem = |problem: String| error(&path, problem);
+    let head = head(&path).map_err(|e| problem(e.to_string()))?;
+    if mask::is_picture(&head) {
+        let mask = mask::read(&path).map_err(problem)?;
+        let pixel = pixels_per_mm.map_or(1.0, |per_mm| 1.0 / per_mm);
+        let unit = if pixels_per_mm.is_some() { Unit::Millimetre } else { Unit::Pixel };
+        let mut notes = Vec::new();
+        if mask.dark_veins {
+            notes.push("the dark parts are taken for veins, as the border is bright".to_owned());
+        }
+        let network = picture::network(mask.veins, pixel);
+        if network.segments().is_empty() {
+            return Err(problem("has no lines that could be veins".into()));
+        }
+        return Ok(ReadNetwork { network, unit, path, pixel: Some(pixel), notes });
+    }
+    let text = text(&path).map_err(problem)?;
+    let document = VeinDocument::from_json(&text).map_err(problem)?;
+    let read = document.graph().map_err(problem)?;
+    let network = Network::of_graph(&read.graph, &read.radii, &read.orders, &read.outline);
+    let mut notes = Vec::new();
+    if read.outline.is_empty() {
+        notes.push("the file has no margin: the blade is drawn around the veins".to_owned());
+    }
+    Ok(ReadNetwork { network, unit: Unit::Millimetre, path, pixel: None, notes })
+}
+
+fn graph_in(folder: &Path) -> Result<PathBuf, String> {
+    let entries = fs::read_dir(folder).map_err(|error| error.to_string())?;
+    let mut graphs: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.to_string_lossy().ends_with(GRAPH_ENDING))
+        .collect();
+    graphs.sort();
+    match graphs.len() {
+        1 => Ok(graphs.remove(0)),
+        0 => Err(format!("holds no NAME{GRAPH_ENDING}; generate with --format json")),
+        n => Err(format!("holds {n} files *{GRAPH_ENDING}; name one")),
+    }
+}
+
+fn head(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(16).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+fn text(path: &Path) -> Result<String, String> {
+    let mut text = String::new();
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let read = file.take(MOST_BYTES + 1).read_to_string(&mut text);
+    match read {
+        Ok(bytes) if bytes as u64 > MOST_BYTES => {
+            Err(format!("is larger than {} megabytes", MOST_BYTES >> 20))
+        }
+        Ok(_) => Ok(text),
+        Err(error) if error.kind() == std::io::ErrorKind::InvalidData => {
+            Err("is neither a vein graph (JSON) nor a picture (PNG, JPEG)".into())
+        }
+        Err(error) => Err(error.to_string()),
+    }
+}

@@ -1,0 +1,200 @@
+//! Lines become nodes of a graph, and stop before they would touch anything.
+
+use glam::DVec2;
+
+use super::curve;
+use super::ground::Ground;
+use crate::geometry::point_grid::PointGrid;
+use crate::geometry::polygon::segments_touch;
+use crate::veins::graph::{NodeId, Rank, VeinGraph};
+
+/// A branch may run this close beside its parent for as many clearances from where it leaves it.
+const LEAVING: f64 = 6.0;
+
+/// Guides keep this many steps between them.
+const CLEARANCE: f64 = 1.5;
+
+/// The veins laid so far.
+pub(super) struct Planter<'a> {
+    pub(super) ground: &'a Ground<'a>,
+    pub(super) graph: VeinGraph,
+    near: PointGrid,
+    pub(super) step: f64,
+    clearance: f64,
+}
+
+/// A vein that was laid, from the node it grew out of.
+#[derive(Debug, Clone)]
+pub(super) struct Vein {
+    pub(super) nodes: Vec<NodeId>,
+    pub(super) line: Vec<DVec2>,
+    /// The vein that stopped it.
+    pub(super) hit: Option<NodeId>,
+}
+
+impl Vein {
+    /// The node a share of the length along, never the first or last; the place and direction there.
+    pub(super) fn at(&self, share: f64) -> (NodeId, DVec2, DVec2) {
+        let last = self.nodes.len() - 1;
+        // Nodes stand at equal steps.
+        let i =
+            ((share * last as f64).round() as usize).clamp(1.min(last), last.max(2) - 1).min(last);
+        let wide = (last / 40).max(2);
+        let (a, b) = (i.saturating_sub(wide), (i + wide).min(last));
+        let ahead = (self.line[b] - self.line[a]).normalize_or_zero();
+        (self.nodes[i], self.line[i], ahead)
+    }
+
+    pub(super) fn end(&self) -> (NodeId, DVec2, DVec2) {
+        let last = self.nodes.len() - 1;
+        let ahead = self.line[last] - self.line[last.saturating_sub(3)];
+        (self.nodes[last], self.line[last], ahead.normalize_or_zero())
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        curve::length(&self.line)
+    }
+}
+
+impl<'a> Planter<'a> {
+    pub(super) fn new(ground: &'a Ground<'a>, step: f64) -> Self {
+        let bounds = ground.margin().bounds();
+        Self {
+            ground,
+            graph: VeinGraph::new(),
+            near: PointGrid::new(bounds, 2.0 * step),
+            step,
+            clearance: CLEARANCE * step,
+        }
+    }
+
+    pub(super) fn root(&mut self, rank: Rank) -> NodeId {
+        let root = self.graph.add_root(self.ground.root());
+        self.graph.set_rank(root, rank);
+        self.near.push(self.ground.root());
+        root
+    }
+
+    /// Lays a vein out of `from` along `line`, as far as it gets; nothing at all when that is less
+    /// than the share `least` of it.
+    pub(super) fn lay(
+        &mut self,
+        from: NodeId,
+        line: &[DVec2],
+        rank: Rank,
+        least: f64,
+    ) -> Option<Vein> {
+        let start = self.graph.positions()[from as usize];
+        let mut line = line.to_vec();
+        *line.first_mut()? = start;
+        let points = curve::resampled(&line, self.step);
+        let mut hit = None;
+        let mut free = 1;
+        while free < points.len() {
+            let (a, b) = (points[free - 1], points[free]);
+            if !b.is_finite() || !self.ground.is_free(a, b) {
+                break;
+            }
+            // A curve that is drawn tight can cross itself.
+            let own = points[..free].windows(2).rev().skip(1);
+            let near = |w: &&[DVec2]| w[0].distance_squared(b) < 16.0 * self.step * self.step;
+            if own.filter(near).any(|w| segments_touch(a, b, w[0], w[1])) {
+                break;
+            }
+            hit = self.in_the_way(a, b, from, start);
+            if hit.is_some() {
+                break;
+            }
+            free += 1;
+        }
+        if free < 3 || ((free - 1) as f64) < least * (points.len() - 1) as f64 {
+            return None;
+        }
+        // A vein along the margin can begin at a branch of a secondary.
+        let least = self.graph.rank(from).map_or(0, |parent| parent.order);
+        let rank = Rank { order: rank.order.max(least), ..rank };
+        let mut nodes = vec![from];
+        for &p in &points[1..free] {
+            let node = self.graph.sprout(nodes[nodes.len() - 1], p);
+            self.graph.set_rank(node, rank);
+            self.near.push(p);
+            nodes.push(node);
+        }
+        Some(Vein { nodes, line: points[..free].to_vec(), hit })
+    }
+
+    /// A node of another vein that the piece a–b would touch or come too close to.
+    fn in_the_way(&self, a: DVec2, b: DVec2, from: NodeId, start: DVec2) -> Option<NodeId> {
+        let positions = self.graph.positions();
+        let leaving = b.distance(start) < LEAVING * self.clearance;
+        let first = a == start;
+        let mut found: Option<(f64, NodeId)> = None;
+        let half = DVec2::splat(self.clearance + 2.0 * self.step);
+        self.near.any_near(b, half, |id, q| {
+            let d2 = b.distance_squared(q);
+            let close = if leaving { 0.05 * self.step } else { self.clearance };
+            let parent = self.graph.parent(id);
+            let own = first && (id == from || parent == Some(from));
+            let crosses =
+                !own && parent.is_some_and(|p| segments_touch(a, b, positions[p as usize], q));
+            let is_close = d2 < close * close;
+            if (crosses || is_close) && found.is_none_or(|best| (d2, id) < best) {
+                found = Some((d2, id));
+            }
+            false
+        });
+        let joined = self.graph.joins().iter().any(|&(c, d)| {
+            let own = first && (c == from || d == from);
+            let [c, d] = [c, d].map(|id| positions[id as usize]);
+            !own && segments_touch(a, b, c, d)
+        });
+        if joined && found.is_none() {
+            return self.near.nearest(b, DVec2::ONE, f64::INFINITY).map(|nearest| nearest.id);
+        }
+        found.map(|(_, id)| id)
+    }
+
+    /// Lays a line that starts beside another vein: out of the nearest node to the place where it
+    /// has got free of the others.
+    pub(super) fn lay_beside(&mut self, line: &[DVec2], rank: Rank, least: f64) -> Option<Vein> {
+        let points = curve::resampled(line, self.step);
+        let near = |p: DVec2| self.near.nearest(p, DVec2::ONE, f64::INFINITY);
+        let free = 1.6 * self.clearance;
+        let first =
+            points.iter().position(|&p| near(p).is_some_and(|n| n.distance2 > free * free))?;
+        // Out of a node farther back, so that it leaves at a small angle.
+        let back = points[first.saturating_sub(6)];
+        let from = near(back)?.id;
+        let mut rest = vec![self.graph.positions()[from as usize]];
+        rest.extend(&points[first..]);
+        self.lay(from, &rest, rank, least)
+    }
+
+    /// Records that a vein has met the one that stopped it.
+    pub(super) fn join_hit(&mut self, vein: &Vein) {
+        let Some(hit) = vein.hit else { return };
+        let (end, at, _) = vein.end();
+        let to = self.graph.positions()[hit as usize];
+        let (graph, positions) = (&self.graph, self.graph.positions());
+        let related =
+            end == hit || graph.parent(end) == Some(hit) || graph.parent(hit) == Some(end);
+        if related || !self.ground.is_free(at, to) {
+            return;
+        }
+        // Another vein may lie between.
+        let half = DVec2::splat(at.distance(to) + 2.0 * self.step);
+        let crossed = self.near.any_near(to, half, |id, q| {
+            let parent = graph.parent(id);
+            let own = [id, parent.unwrap_or(id)].iter().any(|&n| n == end || n == hit);
+            !own && parent.is_some_and(|p| segments_touch(at, to, positions[p as usize], q))
+        });
+        let joined = graph.joins().iter().any(|&(c, d)| {
+            let linked = [c, d].iter().any(|&n| n == end || n == hit);
+            let [c, d] = [c, d].map(|id| positions[id as usize]);
+            !linked && segments_touch(at, to, c, d)
+        });
+        if !crossed && !joined {
+            self.graph.join(end, hit);
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Primary veins: the midrib, and those beside it.
+
+use glam::DVec2;
+
+use super::course::Course;
+use super::curve::{self, smoothstep, turned};
+use super::planter::{Planter, Vein};
+use super::{GuideSpec, PRIMARY, PrimaryType, SecondaryType, targets};
+use crate::seed::Rng;
+
+/// The most that a midrib of full irregularity strays, in lengths of the blade.
+const WANDER: f64 = 0.012;
+
+/// Primaries beside the midrib stand out no less than this from it (degrees).
+const LEAST_ANGLE: f64 = 8.0;
+
+/// A palinactinodromous primary leaves the one before at this share of its length.
+const LEAVES_AT: f64 = 0.1;
+
+/// The primary veins of a leaf.
+pub(super) struct Primaries {
+    pub(super) midrib: Option<Vein>,
+    pub(super) laterals: Vec<Lateral>,
+    /// Secondaries leave the midrib above this share of it.
+    pub(super) secondaries_from: f64,
+}
+
+/// A primary beside the midrib.
+pub(super) struct Lateral {
+    pub(super) vein: Vein,
+    pub(super) side: f64,
+    /// Whether it runs into a lobe.
+    pub(super) lobed: bool,
+}
+
+/// Lays the primaries.
+pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) -> Primaries {
+    let root = planter.root(PRIMARY);
+    let mut primaries = Primaries { midrib: None, laterals: Vec::new(), secondaries_from: 0.0 };
+    if spec.primary == PrimaryType::Flabellate {
+        fan(spec, planter, root, rng);
+        return primaries;
+    }
+    let axis = planter.ground.axis();
+    let amplitude = spec.irregularity * WANDER * planter.ground.length();
+    let axis = curve::wavering(&axis, amplitude, rng);
+    primaries.midrib = planter.lay(root, &axis, PRIMARY, 0.0);
+    let Some(midrib) = primaries.midrib.clone() else { return primaries };
+    match spec.primary {
+        PrimaryType::Actinodromous | PrimaryType::Palinactinodromous => {
+            palmate(spec, planter, &midrib, &mut primaries, rng);
+        }
+        PrimaryType::Acrodromous | PrimaryType::Campylodromous | PrimaryType::Parallelodromous => {
+            arches(spec, planter, &midrib, &mut primaries, rng);
+        }
+        PrimaryType::None | PrimaryType::Pinnate | PrimaryType::Flabellate => {}
+    }
+    primaries
+}
+
+/// Rays from the base, into the lobes where there are any.
+fn palmate(
+    spec: &GuideSpec,
+    planter: &mut Planter<'_>,
+    midrib: &Vein,
+    primaries: &mut Primaries,
+    rng: &mut Rng,
+) {
+    let pairs = (spec.primary_count.saturating_sub(1) / 2) as usize;
+    let ground = planter.ground;
+    let lobes = targets::lobes(ground.margin());
+    let handed = [1.0, -1.0].map(|side| rng.between(-1.0, 1.0) * side);
+    for side in [1.0, -1.0] {
+        let mut last: Option<Vein> = None;
+        let tips: Vec<_> = lobes.iter().filter(|tip| tip.side == side).collect();
+        for k in 0..pairs {
+            let sway = [handed[usize::from(side < 0.0)], rng.between(-1.0, 1.0), rng.unit()];
+            let share = (k + 1) as f64 / pairs as f64;
+            let angle = spec.primary_angle_deg * share * (1.0 + 0.08 * spec.irregularity * sway[1]);
+            // Out of the midrib, or out of the one before.
+            let origin = match (&last, spec.primary) {
+                (Some(last), PrimaryType::Palinactinodromous) => last.at(LEAVES_AT),
+                _ if spec.primary_origin > 0.0 => {
+                    midrib.at(spec.primary_origin * (1.0 + 0.3 * spec.irregularity * sway[0]))
+                }
+                _ => (midrib.nodes[0], midrib.line[0], midrib.at(0.1).2),
+            };
+            let axis = midrib.at(0.1).2;
+            let line = if let Some(tip) = tips.get(k) {
+                into_lobe(planter, origin.1, side, tip.at)
+            } else if tips.is_empty() {
+                let curvature = (spec.curvature + 0.25).min(0.6);
+                let (from, ahead) = (origin.1, axis);
+                let angle_deg = angle.max(LEAST_ANGLE);
+                let course = Course { from, ahead, side, angle_deg, curvature };
+                match spec.secondary {
+                    SecondaryType::Craspedodromous => course.to_margin(ground),
+                    _ => course.along_margin(ground, spec.reach.max(0.88), 0.4),
+                }
+            } else {
+                continue;
+            };
+            let amplitude = 0.5 * spec.irregularity * WANDER * curve::length(&line);
+            let line = curve::wavering(&line, amplitude, rng);
+            if let Some(vein) = planter.lay(origin.0, &line, PRIMARY, 0.4) {
+                last = Some(vein.clone());
+                primaries.laterals.push(Lateral { vein, side, lobed: !tips.is_empty() });
+            }
+        }
+    }
+    primaries.secondaries_from = spec.primary_origin;
+}
+
+/// From the base into the tip of a lobe: a slight bow, or round the sinus where that is cut off.
+fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
+    let chord = tip - from;
+    let bow = curve::cubic(
+        [from, from + turned(chord, 6.0, side) * 0.35, from + turned(chord, 1.0, side) * 0.7, tip],
+        60,
+    );
+    let inner = &bow[1..bow.len() - 2];
+    if inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1])) {
+        return bow;
+    }
+    planter.ground.route(from, tip).unwrap_or(bow)
+}
+
+/// Half the width of the blade on one side of a midrib, at 64 places from base to apex, evened.
+fn half_widths(planter: &Planter<'_>, midrib: &Vein, side: f64) -> Vec<f64> {
+    let ground = planter.ground;
+    let mut widths: Vec<f64> = (0..=64)
+        .map(|i| {
+            let (_, p, ahead) = midrib.at(f64::from(i) / 64.0);
+            ground.cast(p, turned(ahead, 90.0, side))
+        })
+        .collect();
+    for _ in 0..6 {
+        let before = widths.clone();
+        for i in 1..64 {
+            widths[i] = before[i].min((before[i - 1] + 2.0 * before[i] + before[i + 1]) / 4.0);
+        }
+    }
+    widths
+}
+
+/// Lines beside the midrib, at constant shares of the width once they have left the base.
+fn arches(
+    spec: &GuideSpec,
+    planter: &mut Planter<'_>,
+    midrib: &Vein,
+    primaries: &mut Primaries,
+    rng: &mut Rng,
+) {
+    let pairs = (spec.primary_count.saturating_sub(1) / 2) as usize;
+    let parallel = spec.primary == PrimaryType::Parallelodromous;
+    // Where the lines have come to their place, and where they end, in lengths of the midrib.
+    let origin = spec.primary_origin;
+    let (settled, end) = if parallel { (0.12, 0.985) } else { (0.45, 0.955) };
+    let widest = if parallel { 0.93 } else { 0.72 };
+    let slope = libm::tan(spec.primary_angle_deg.min(80.0).to_radians());
+    for side in [1.0, -1.0] {
+        let widths = half_widths(planter, midrib, side);
+        let width = |t: f64| {
+            let at = (t * 64.0).clamp(0.0, 63.999);
+            let (i, part) = (at as usize, at.fract());
+            widths[i] * (1.0 - part) + widths[i + 1] * part
+        };
+        for k in 0..pairs {
+            let sway = rng.between(-1.0, 1.0);
+            let share = (k + 1) as f64 / (pairs as f64 + if parallel { 0.0 } else { 0.35 });
+            let share = share * widest * (1.0 + 0.06 * spec.irregularity * sway);
+            let share = share.min(0.95);
+            let total = midrib.length();
+            let line: Vec<DVec2> = (0..=160)
+                .map(|i| {
+                    let t = origin + (end - origin) * f64::from(i) / 160.0;
+                    let (p, ahead) = curve::at(&midrib.line, t);
+                    let rise = smoothstep(-settled, settled, t - origin) * 2.0 - 1.0;
+                    // The angle at which they leave limits how fast they go out.
+                    let steepest = (t - origin) * total * slope * share / widest;
+                    let out = (share * width(t) * rise).min(steepest);
+                    p + turned(ahead, 90.0, side) * out
+                })
+                .collect();
+            let line = if spec.primary == PrimaryType::Campylodromous {
+                recurved(spec, planter, midrib, side, share / widest, &line)
+            } else {
+                line
+            };
+            let line = curve::rounded(&line, 4);
+            let laid = if parallel || spec.primary == PrimaryType::Acrodromous {
+                planter.lay_beside(&line, PRIMARY, 0.3)
+            } else {
+                planter.lay(midrib.nodes[0], &line, PRIMARY, 0.3)
+            };
+            if let Some(vein) = laid {
+                primaries.laterals.push(Lateral { vein, side, lobed: false });
+            }
+        }
+    }
+    // Below, a secondary would come out on the far side of the arches.
+    primaries.secondaries_from = origin + 0.12;
+}
+
+/// A line that leaves the base at a wide angle and comes back to `line` where that has settled.
+fn recurved(
+    spec: &GuideSpec,
+    planter: &Planter<'_>,
+    midrib: &Vein,
+    side: f64,
+    share: f64,
+    line: &[DVec2],
+) -> Vec<DVec2> {
+    let from = midrib.line[0];
+    let (_, _, axis) = midrib.at(0.1);
+    let towards = turned(axis, spec.primary_angle_deg * share, side);
+    let meet = line.len() * 2 / 5;
+    let ahead = (line[meet + 1] - line[meet]).normalize_or_zero();
+    let room = planter.ground.cast(from, towards);
+    let out = 0.55 * room.min(line[meet].distance(from));
+    let back = 0.5 * line[meet].distance(from);
+    let bow = [from, from + towards * out, line[meet] - ahead * back, line[meet]];
+    let mut whole = curve::cubic(bow, 60);
+    whole.extend(&line[meet + 1..]);
+    whole
+}
+
+/// A vein of a fan: it serves the places `first..last` on the margin.
+struct Ray {
+    from: u32,
+    ahead: DVec2,
+    first: usize,
+    last: usize,
+}
+
+/// Veins that fork until they stand close enough at the margin.
+fn fan(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
+    let ground = planter.ground;
+    let base = ground.root();
+    // The part of the margin that the veins reach: what is seen from the base within the angle.
+    let line = crate::geometry::polygon::resampled(
+        ground.margin().outline(),
+        0.25 * spec.fork_spacing_mm.min(ground.length() / 8.0),
+    );
+    let within = |p: &&DVec2| {
+        let angle = (**p - base).angle_to(DVec2::Y).abs().to_degrees();
+        angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(**p, 0.97))
+    };
+    let arc: Vec<DVec2> = line.iter().filter(within).copied().collect();
+    let count = (curve::length(&arc) / spec.fork_spacing_mm).ceil().clamp(1.0, 400.0) as usize;
+    if arc.len() < 2 {
+        return;
+    }
+    let ends: Vec<DVec2> = (0..count)
+        .map(|i| {
+            let jitter = 0.5 * spec.irregularity * rng.between(-0.5, 0.5);
+            curve::at(&arc, (i as f64 + 0.5 + jitter) / count as f64).0
+        })
+        .collect();
+    let basal = (spec.primary_count as usize).clamp(1, count);
+    let mut open: Vec<Ray> = (0..basal)
+        .map(|i| {
+            let (first, last) = (i * count / basal, (i + 1) * count / basal);
+            Ray { from: root, ahead: DVec2::ZERO, first, last }
+        })
+        .collect();
+    while let Some(ray) = open.pop() {
+        let served = ray.last - ray.first;
+        if served == 0 {
+            continue;
+        }
+        let from = planter.graph.positions()[ray.from as usize];
+        let middle = {
+            let (a, b) = (ends[ray.first + (served - 1) / 2], ends[ray.first + served / 2]);
+            a.lerp(b, 0.5)
+        };
+        // Where there is room for two it forks: sooner the more places it serves.
+        let share = if served == 1 {
+            1.0
+        } else {
+            let even = 1.5 / served as f64;
+            (even * (1.0 + 0.8 * spec.irregularity * rng.between(-1.0, 1.0))).min(0.85)
+        };
+        let to = base.lerp(middle, share);
+        let chord = from.distance(to);
+        let towards = (to - from).normalize_or_zero();
+        let start = if ray.ahead == DVec2::ZERO { towards } else { ray.ahead };
+        let leave = (start + towards * 1.5).normalize_or(towards);
+        let arrive = (middle - base).normalize_or(towards);
+        let bow = [from, from + leave * (0.35 * chord), to - arrive * (0.35 * chord), to];
+        let behind =
+            (to - from).dot(middle - base) <= 2.5 * planter.step * (middle - base).length();
+        let end = if behind && served > 1 {
+            Some((ray.from, ray.ahead))
+        } else {
+            planter.lay(ray.from, &curve::cubic(bow, 40), PRIMARY, 0.0).map(|vein| {
+                let (node, _, ahead) = vein.end();
+                (node, ahead)
+            })
+        };
+        let (Some((from, ahead)), true) = (end, served > 1) else { continue };
+        let half = ray.first + served / 2;
+        open.push(Ray { from, ahead, first: ray.first, last: half });
+        open.push(Ray { from, ahead, first: half, last: ray.last });
+    }
+}

@@ -1,0 +1,508 @@
+//! Secondary veins: where they leave, how they run, how they end.
+
+use glam::DVec2;
+
+use super::course::{Course, decurrent};
+use super::curve::{self, turned};
+use super::planter::{Planter, Vein};
+use super::primary::{Lateral, Primaries};
+use super::rim::Rim;
+use super::targets::{self, Tip};
+use super::{EXTERIOR, GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
+use crate::seed::Rng;
+
+/// An arch meets the next secondary at this share of that one.
+const ARCH_AT: f64 = 0.8;
+
+/// A secondary of full irregularity leaves at up to so many degrees more or less.
+const ANGLE_SPREAD: f64 = 16.0;
+
+/// The least part of a secondary on its way to the margin that is worth laying, where it should reach
+/// it.
+const LEAST_CRASPEDODROMOUS: f64 = 0.6;
+
+/// The same for others.
+const LEAST: f64 = 0.45;
+
+/// What one secondary is to be.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    /// Where it leaves, as a share of its parent vein.
+    share: f64,
+    side: f64,
+    angle_deg: f64,
+    curvature: f64,
+    /// To the next on its side (mm).
+    spacing: f64,
+    /// −1 – 1, for what else varies.
+    sway: f64,
+}
+
+impl Plan {
+    fn course(&self, parent: &Vein, share: f64) -> Course {
+        let (_, from, ahead) = parent.at(share);
+        Course {
+            from,
+            ahead,
+            side: self.side,
+            angle_deg: self.angle_deg,
+            curvature: self.curvature,
+        }
+    }
+}
+
+/// A secondary that was laid.
+struct Laid {
+    vein: Vein,
+    arch: Option<Vein>,
+}
+
+/// Lays the secondaries of all primaries, and the vein along the margin.
+pub(super) fn lay(
+    spec: &GuideSpec,
+    planter: &mut Planter<'_>,
+    primaries: &Primaries,
+    rng: &mut Rng,
+) {
+    let Some(midrib) = &primaries.midrib else { return };
+    let mut rim = Rim::new(spec, planter);
+    if spec.secondary != SecondaryType::None {
+        let ground = planter.ground;
+        let first = spec.first_at.max(primaries.secondaries_from).min(spec.last_at - 1e-3);
+        let count = spec.secondary_count as usize;
+        let between = (spec.last_at - first) / count.max(1) as f64 * midrib.length();
+        let reaches_margin = !matches!(
+            spec.secondary,
+            SecondaryType::Eucamptodromous
+                | SecondaryType::Brochidodromous
+                | SecondaryType::FestoonedBrochidodromous
+                | SecondaryType::Reticulodromous
+        ) && spec.rim != RimType::Intramarginal;
+        let teeth = if reaches_margin && spec.tooth_reach > 0.0 {
+            targets::teeth(ground.margin(), between)
+        } else {
+            Vec::new()
+        };
+        let mut row = Row { spec, teeth, taken: Vec::new(), rim: &mut rim };
+        row.both_sides(planter, midrib, count, (first, spec.last_at), rng);
+        let palmate =
+            matches!(spec.primary, PrimaryType::Actinodromous | PrimaryType::Palinactinodromous);
+        if palmate {
+            for lateral in &primaries.laterals {
+                row.lateral(planter, lateral, between, rng);
+            }
+        }
+    }
+    rim.lay(planter, primaries);
+}
+
+/// Secondaries along one primary after the other.
+struct Row<'a> {
+    spec: &'a GuideSpec,
+    teeth: Vec<Tip>,
+    /// Teeth that have a vein.
+    taken: Vec<DVec2>,
+    rim: &'a mut Rim,
+}
+
+impl Row<'_> {
+    /// Where `count` secondaries leave between two shares of a vein, with the spacing at each.
+    fn places(&self, count: usize, (first, last): (f64, f64)) -> Vec<(f64, f64)> {
+        let weight =
+            |k: usize| 1.0 - self.spec.spacing_change * (k as f64 + 0.5) / count.max(2) as f64;
+        let total: f64 = (0..count.saturating_sub(1)).map(weight).sum();
+        let mut at = first;
+        (0..count)
+            .map(|k| {
+                let spacing =
+                    if total > 0.0 { weight(k) / total * (last - first) } else { last - first };
+                let place = (at, spacing);
+                at += spacing;
+                place
+            })
+            .collect()
+    }
+
+    fn both_sides(
+        &mut self,
+        planter: &mut Planter<'_>,
+        midrib: &Vein,
+        count: usize,
+        range: (f64, f64),
+        rng: &mut Rng,
+    ) {
+        let spec = self.spec;
+        let leads = if rng.unit() < 0.5 { 1.0 } else { -1.0 };
+        let places = self.places(count, range);
+        let mut plans: Vec<[Plan; 2]> = Vec::new();
+        for &(place, spacing) in &places {
+            let shared = draws(rng);
+            plans.push([1.0, -1.0].map(|side| {
+                let own = draws(rng);
+                let mixed: [f64; 4] = std::array::from_fn(|i| {
+                    spec.irregularity * (shared[i] + (own[i] - shared[i]) * spec.asymmetry)
+                });
+                let t = (place - range.0) / (range.1 - range.0);
+                let stagger = 0.25 * spec.alternation * side * leads;
+                Plan {
+                    share: place + spacing * (stagger + 0.35 * mixed[0]),
+                    side,
+                    angle_deg: spec.secondary_angle_deg
+                        + spec.angle_change_deg * t
+                        + ANGLE_SPREAD * 0.5 * mixed[1],
+                    curvature: spec.curvature + 0.25 * mixed[2],
+                    spacing: spacing * midrib.length(),
+                    sway: mixed[3],
+                }
+            }));
+        }
+        let tips = [0, 1].map(|s| {
+            let side: Vec<Plan> = plans.iter().map(|pair| pair[s]).collect();
+            self.teeth_for(planter, midrib, &side)
+        });
+        // From the apex down, so that arches find the one above.
+        let mut above: [Option<Laid>; 2] = [None, None];
+        for (k, pair) in plans.iter().enumerate().rev() {
+            for (s, plan) in pair.iter().enumerate() {
+                if self.is_between_teeth(&tips[s], k) {
+                    continue;
+                }
+                let laid = self.secondary(planter, midrib, plan, above[s].as_ref(), tips[s][k]);
+                if laid.is_some() {
+                    above[s] = laid;
+                }
+            }
+        }
+        for pairs in plans.windows(2) {
+            for (lower, upper) in pairs[0].iter().zip(&pairs[1]) {
+                self.intersecondaries(planter, midrib, lower, upper, rng);
+            }
+        }
+    }
+
+    /// The outer side of a primary beside the midrib, and the inner one within a lobe.
+    fn lateral(
+        &mut self,
+        planter: &mut Planter<'_>,
+        lateral: &Lateral,
+        between: f64,
+        rng: &mut Rng,
+    ) {
+        let spec = self.spec;
+        let count = spec.lateral_count as usize;
+        let mut sides = vec![(lateral.side, (0.16, 0.86))];
+        if lateral.lobed {
+            sides.push((-lateral.side, (0.45, 0.9)));
+        }
+        for (side, range) in sides {
+            let mut plan = |(place, spacing): (f64, f64)| {
+                let own = draws(rng).map(|draw| draw * spec.irregularity);
+                Plan {
+                    share: place + 0.3 * spacing * own[0],
+                    side,
+                    angle_deg: spec.secondary_angle_deg + 0.5 * ANGLE_SPREAD * own[1],
+                    curvature: spec.curvature + 0.25 * own[2],
+                    spacing: (spacing * lateral.vein.length()).min(between),
+                    sway: own[3],
+                }
+            };
+            let plans: Vec<Plan> = self.places(count, range).into_iter().map(&mut plan).collect();
+            let tips = self.teeth_for(planter, &lateral.vein, &plans);
+            let mut above = None;
+            for (plan, tip) in plans.iter().zip(tips).rev() {
+                let laid = self.secondary(planter, &lateral.vein, plan, above.as_ref(), tip);
+                if laid.is_some() {
+                    above = laid;
+                }
+            }
+        }
+    }
+
+    /// One secondary with its arches and branches, into the tooth `tip` if there is one for it.
+    fn secondary(
+        &mut self,
+        planter: &mut Planter<'_>,
+        parent: &Vein,
+        plan: &Plan,
+        above: Option<&Laid>,
+        tip: Option<Tip>,
+    ) -> Option<Laid> {
+        let ground = planter.ground;
+        let spec = self.spec;
+        let course = |share: f64| plan.course(parent, share);
+        let mut share = plan.share.clamp(0.01, 0.99);
+        let mut full = course(share).to_margin(ground);
+        if let Some(tip) = tip {
+            // Leave so as to keep the angle, then turn the rest of the way.
+            let (_, _, ahead) = parent.at(share);
+            let shift = (tip.at - full[full.len() - 1]).dot(ahead) / parent.length();
+            let most = 0.4 * plan.spacing / parent.length();
+            share = (share + (0.8 * shift).clamp(-most, most)).clamp(0.01, 0.99);
+            full = curve::ended_at(&course(share).to_margin(ground), tip.at);
+            self.taken.push(tip.at);
+        }
+        let line = match (spec.rim, spec.secondary) {
+            (RimType::Intramarginal, _) => self.rim.cut(&full, plan.side),
+            (_, SecondaryType::Craspedodromous) => full.clone(),
+            (_, SecondaryType::Eucamptodromous) => {
+                course(share).along_margin(ground, spec.reach, 0.45)
+            }
+            (_, SecondaryType::Reticulodromous | SecondaryType::Cladodromous) => {
+                curve::beginning(&full, 0.85 * spec.reach)
+            }
+            _ if above.is_none() => course(share).along_margin(ground, spec.reach, 0.3),
+            _ => curve::beginning(&full, spec.reach * (1.0 + 0.1 * plan.sway)),
+        };
+        let craspedodromous = spec.secondary == SecondaryType::Craspedodromous;
+        let crosses = matches!(
+            spec.primary,
+            PrimaryType::Acrodromous | PrimaryType::Campylodromous | PrimaryType::Parallelodromous
+        );
+        let least = match (crosses, craspedodromous) {
+            (true, _) => 0.02,
+            (_, true) => LEAST_CRASPEDODROMOUS,
+            _ => LEAST * curve::length(&full) / curve::length(&line),
+        };
+        let vein = self.attach(planter, parent, share, plan, &line, least)?;
+        if vein.hit.is_some() && crosses {
+            planter.join_hit(&vein);
+        }
+        if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous)
+        {
+            self.rim.landed(&vein, plan.side);
+            return Some(Laid { vein, arch: None });
+        }
+        let arch = match spec.secondary {
+            SecondaryType::Semicraspedodromous
+            | SecondaryType::FestoonedSemicraspedodromous
+            | SecondaryType::Brochidodromous
+            | SecondaryType::FestoonedBrochidodromous => {
+                above.and_then(|above| arch_to(planter, &vein, above, plan))
+            }
+            _ => None,
+        };
+        match spec.secondary {
+            SecondaryType::Semicraspedodromous | SecondaryType::FestoonedSemicraspedodromous
+                if above.is_some() =>
+            {
+                branch_to(planter, &vein, full[full.len() - 1]);
+            }
+            SecondaryType::Reticulodromous => fork(planter, &vein, plan, 3, 38.0, 0.9),
+            SecondaryType::Cladodromous => fork(planter, &vein, plan, 2, 24.0, 0.97),
+            _ => {}
+        }
+        let festooned = matches!(
+            spec.secondary,
+            SecondaryType::FestoonedSemicraspedodromous | SecondaryType::FestoonedBrochidodromous
+        );
+        if let (true, Some(arch), Some(upper)) =
+            (festooned, &arch, above.and_then(|a| a.arch.as_ref()))
+        {
+            festoon(planter, arch, upper, plan);
+        }
+        Some(Laid { vein, arch })
+    }
+
+    /// Lays a line out of its parent, drawn along it for a while where secondaries are decurrent.
+    fn attach(
+        &self,
+        planter: &mut Planter<'_>,
+        parent: &Vein,
+        share: f64,
+        plan: &Plan,
+        line: &[DVec2],
+        least: f64,
+    ) -> Option<Vein> {
+        let back = 0.3 * self.spec.decurrence * plan.spacing.min(share * parent.length());
+        if back > 2.0 * planter.step {
+            let (node, base, _) = parent.at(share - back / parent.length());
+            let bent = decurrent(line, base, back);
+            if let Some(vein) = planter.lay(node, &bent, SECONDARY, least) {
+                return Some(vein);
+            }
+        }
+        planter.lay(parent.at(share).0, line, SECONDARY, least)
+    }
+
+    /// The tooth that each of a row of secondaries, from base to apex, should end in: those that
+    /// bring most of them into teeth with the least bending, in the order of the row.
+    fn teeth_for(&self, planter: &Planter<'_>, parent: &Vein, plans: &[Plan]) -> Vec<Option<Tip>> {
+        let none = vec![None; plans.len()];
+        let Some(side) = plans.first().map(|plan| plan.side) else { return none };
+        let free = |tip: &&Tip| tip.side == side && !self.taken.contains(&tip.at);
+        let mut tips: Vec<Tip> = self.teeth.iter().filter(free).copied().collect();
+        if tips.is_empty() {
+            return none;
+        }
+        let ends: Vec<(DVec2, f64)> = plans
+            .iter()
+            .map(|plan| {
+                let line =
+                    plan.course(parent, plan.share.clamp(0.01, 0.99)).to_margin(planter.ground);
+                (line[line.len() - 1], self.spec.tooth_reach * plan.spacing)
+            })
+            .collect();
+        // The inner side of a lobe runs down the margin while its vein runs up.
+        let (first, last) = (ends[0].0, ends[ends.len() - 1].0);
+        let along = |p: DVec2| {
+            let near = |a: &&Tip, b: &&Tip| a.at.distance(p).total_cmp(&b.at.distance(p));
+            tips.iter().min_by(near).map_or(0.0, |tip| tip.along)
+        };
+        if along(last) < along(first) {
+            tips.reverse();
+        }
+        let tallest = tips.iter().map(|tip| tip.height).fold(0.0, f64::max);
+        let gain = |i: usize, j: usize| {
+            let (end, reach) = ends[i];
+            let bend = tips[j].at.distance(end) / reach;
+            if bend <= 1.0 {
+                1.2 - bend + 0.6 * tips[j].height / tallest
+            } else {
+                f64::NEG_INFINITY
+            }
+        };
+        // best[i][j]: the most that the first i secondaries get from the first j teeth.
+        let mut best = vec![vec![0.0; tips.len() + 1]; plans.len() + 1];
+        for i in 1..=plans.len() {
+            for j in 1..=tips.len() {
+                let matched = best[i - 1][j - 1] + gain(i - 1, j - 1);
+                best[i][j] = matched.max(best[i - 1][j]).max(best[i][j - 1]);
+            }
+        }
+        let mut matched = none;
+        let (mut i, mut j) = (plans.len(), tips.len());
+        while i > 0 && j > 0 {
+            if best[i][j] == best[i - 1][j] {
+                i -= 1;
+            } else if best[i][j] == best[i][j - 1] {
+                j -= 1;
+            } else {
+                (i, j) = (i - 1, j - 1);
+                matched[i] = Some(tips[j]);
+            }
+        }
+        matched
+    }
+
+    /// Whether a secondary has no tooth, and those before and after it have neighbouring ones: in a
+    /// margin of large teeth each vein has its own.
+    fn is_between_teeth(&self, tips: &[Option<Tip>], k: usize) -> bool {
+        let before = tips[..k].iter().rev().find_map(|tip| *tip);
+        let after = tips[k..].iter().find_map(|tip| *tip);
+        let (Some(before), Some(after)) = (before, after) else { return false };
+        let between = |tip: &Tip| {
+            tip.side == before.side && tip.along > before.along && tip.along < after.along
+        };
+        tips[k].is_none()
+            && self.spec.secondary == SecondaryType::Craspedodromous
+            && !self.teeth.iter().any(between)
+    }
+
+    fn intersecondaries(
+        &self,
+        planter: &mut Planter<'_>,
+        midrib: &Vein,
+        lower: &Plan,
+        upper: &Plan,
+        rng: &mut Rng,
+    ) {
+        let spec = self.spec;
+        let [a, b, c] = [rng.unit(), rng.unit(), rng.unit()];
+        let count = (spec.intersecondary_count + a).floor() as usize;
+        for i in 0..count {
+            let part =
+                (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
+            let share = lower.share + (upper.share - lower.share) * part;
+            let (node, from, ahead) = midrib.at(share);
+            let course = Course {
+                from,
+                ahead,
+                side: lower.side,
+                angle_deg: 0.5 * (lower.angle_deg + upper.angle_deg) + 4.0 * (c - 0.5),
+                curvature: lower.curvature,
+            };
+            let length = spec.intersecondary_length * (0.75 + 0.5 * b);
+            let line = course.part_way(planter.ground, length);
+            planter.lay(node, &line, INTERSECONDARY, 0.4);
+        }
+    }
+}
+
+/// Four numbers from −1 to 1.
+fn draws(rng: &mut Rng) -> [f64; 4] {
+    std::array::from_fn(|_| rng.between(-1.0, 1.0))
+}
+
+/// An arch from the end of a secondary to the one above, with which it closes a loop.
+fn arch_to(planter: &mut Planter<'_>, vein: &Vein, above: &Laid, plan: &Plan) -> Option<Vein> {
+    let (node, from, heading) = vein.end();
+    let (_, to, outward) = above.vein.at(ARCH_AT + 0.06 * plan.sway);
+    let chord = from.distance(to);
+    if chord > 3.5 * plan.spacing {
+        return None;
+    }
+    let bulge = (from - to).normalize_or_zero();
+    let arrive = (bulge * 0.55 + outward * 0.85).normalize_or(bulge);
+    for reach in [0.5, 0.3, 0.1] {
+        let bow = [from, from + heading * (reach * chord), to + arrive * (reach * chord), to];
+        if let Some(arch) = planter.lay(node, &curve::cubic(bow, 40), SECONDARY, 0.6) {
+            planter.join_hit(&arch);
+            return Some(arch);
+        }
+    }
+    None
+}
+
+/// A branch from the end of a secondary straight on to the margin.
+fn branch_to(planter: &mut Planter<'_>, vein: &Vein, tip: DVec2) {
+    let (node, from, heading) = vein.end();
+    let chord = from.distance(tip);
+    let bow = [from, from + heading * (0.35 * chord), from.lerp(tip, 0.7), tip];
+    planter.lay(node, &curve::cubic(bow, 24), EXTERIOR, 0.5);
+}
+
+/// An arch outside the arches of two neighbours.
+fn festoon(planter: &mut Planter<'_>, arch: &Vein, upper: &Vein, plan: &Plan) {
+    let (node, from, ahead) = arch.at(0.3);
+    let (_, to, above) = upper.at(0.25);
+    let chord = from.distance(to);
+    let out = [ahead, above].map(|v| turned(v, 62.0, plan.side));
+    for reach in [0.5, 0.3] {
+        let bow = [from, from + out[0] * (reach * chord), to + out[1] * (0.6 * reach * chord), to];
+        if let Some(vein) = planter.lay(node, &curve::cubic(bow, 32), EXTERIOR, 0.5) {
+            planter.join_hit(&vein);
+            return;
+        }
+    }
+}
+
+/// Branches of branches towards the margin, `generations` times.
+fn fork(
+    planter: &mut Planter<'_>,
+    vein: &Vein,
+    plan: &Plan,
+    generations: usize,
+    angle_deg: f64,
+    reach: f64,
+) {
+    let mut tips = vec![vein.end()];
+    for generation in 0..generations {
+        let mut next = Vec::new();
+        for (node, from, heading) in tips {
+            for side in [plan.side, -plan.side] {
+                let sway = 1.0 + 0.3 * plan.sway * side;
+                let towards = turned(heading, 0.5 * angle_deg * sway, side);
+                let room = planter.ground.cast(from, towards);
+                let left = (generations - generation) as f64;
+                let long = (reach * room / left * 1.2).min(reach * room);
+                let bend = from + heading * (0.3 * long);
+                let to = from + towards * long;
+                let bow = [from, bend, from.lerp(to, 0.75), to];
+                if let Some(branch) = planter.lay(node, &curve::cubic(bow, 20), EXTERIOR, 0.4) {
+                    next.push(branch.end());
+                }
+            }
+        }
+        tips = next;
+    }
+}

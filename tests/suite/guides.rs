@@ -1,0 +1,77 @@
+//! Guided veins in whole leaves: every preset, several seeds.
+
+use venation::growth::{GrowingBlade, GrowthType};
+use venation::margin;
+use venation::observer::Silent;
+use venation::presets::PRESETS;
+use venation::seed::Seed;
+use venation::spec::LeafSpec;
+use venation::veins::{self, NodeId, VeinKind, Venation};
+
+fn grown(spec: &LeafSpec, seed: u64) -> (GrowingBlade, Venation) {
+    let margin = margin::build(&spec.margin).expect("a margin");
+    let blade = GrowingBlade::new(margin, &spec.growth).expect("it grows");
+    let venation = veins::grow(&spec.veins, &blade, Seed(seed), &mut Silent).expect("veins");
+    (blade, venation)
+}
+
+#[test]
+fn presets_keep_what_venation_promises_whatever_the_growth() {
+    for preset in PRESETS {
+        for (seed, &growth) in GrowthType::ALL.iter().enumerate() {
+            let seed = seed as u64;
+            let document = preset.document().expect("it parses");
+            let mut spec = document.resolve(Seed(seed)).expect("it resolves");
+            spec.growth.r#type = growth;
+            spec.veins.spawn_rate = 40.0;
+            if growth == GrowthType::Marginal {
+                spec.growth.scale = 0.8;
+            }
+            let name = format!("{} {growth} {seed}", preset.name);
+            let (blade, venation) = grown(&spec, seed);
+            assert_eq!(venation.check(blade.finished()), None, "{name}");
+            let (_, again) = grown(&spec, seed);
+            assert_eq!(venation, again, "{name}");
+            let longest = 1.5 * 1.2 * spec.veins.node_step_mm;
+            let at = |node: NodeId| venation.graph().positions()[node as usize];
+            for (a, b) in venation.graph().edges() {
+                assert!(at(a).distance(at(b)) <= longest, "{name}: long at {}", at(b));
+            }
+        }
+    }
+}
+
+#[test]
+fn in_every_preset_the_midrib_is_straight_and_the_widest_vein() {
+    for preset in PRESETS {
+        for seed in 0..3 {
+            let spec = preset.document().expect("it parses").resolve(Seed(seed)).expect("resolves");
+            let (blade, venation) = grown(&spec, seed);
+            let (graph, kind) = (venation.graph(), |node: NodeId| venation.kind(node));
+            let at = |node: NodeId| graph.positions()[node as usize];
+            let near_apex = |node: &NodeId| {
+                kind(*node) == VeinKind::Primary
+                    && at(*node).distance(blade.finished().apex())
+                        < 0.05 * blade.finished().length_mm()
+            };
+            let nodes = 0..graph.len() as NodeId;
+            let tip = nodes.clone().rfind(near_apex).expect("a midrib up to the apex");
+            let (mut node, mut path) = (tip, 0.0);
+            while let Some(parent) = graph.parent(node) {
+                path += at(node).distance(at(parent));
+                assert_eq!(venation.orders()[node as usize], 1);
+                node = parent;
+            }
+            assert!(path / at(tip).distance(at(node)) <= 1.05, "{} {seed}", preset.name);
+            let secondaries = |side: f64| {
+                let edges = graph.edges();
+                let leaves = edges.filter(|&(a, b)| {
+                    kind(a) == VeinKind::Primary && kind(b) == VeinKind::Secondary
+                });
+                leaves.filter(|&(a, b)| (at(b).x - at(a).x) * side > 0.0).count() as i64
+            };
+            let (right, left) = (secondaries(1.0), secondaries(-1.0));
+            assert!(right >= 4 && (right - left).abs() <= 3, "{} {right} {left}", preset.name);
+        }
+    }
+}

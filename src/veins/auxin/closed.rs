@@ -57,15 +57,26 @@ struct Tag {
     last_step: u64,
 }
 
+/// What changes about a source.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    place: DVec2,
+    around: Around,
+    source: u32,
+    /// Its tag, or [`NONE`].
+    tag: u32,
+    is_acting: bool,
+}
+
 /// The living sources and whom they call.
 pub(super) struct Calls {
     positions: Vec<DVec2>,
-    around: Vec<Around>,
-    /// From this far (squared) on a node does not matter; [`DEAD`] at the end.
+    /// Where the state of each source is; neighbours in the blade are neighbours there, so that a new
+    /// node finds the sources around it together in memory. [`NONE`] for those long dead.
+    slots: Vec<u32>,
+    states: Vec<State>,
+    /// For each state: from this far (squared) on a node does not matter; [`DEAD`] at the end.
     outer2: Vec<f64>,
-    is_acting: Vec<bool>,
-    /// The tag of each source, or [`NONE`].
-    tag_of: Vec<u32>,
     tags: Vec<Tag>,
     free_tags: Vec<u32>,
     /// Sources in reach of a node, ascending.
@@ -92,10 +103,9 @@ impl Calls {
         let unlimited = spec.attraction_distance_mm == 0.0;
         Self {
             positions: Vec::new(),
-            around: Vec::new(),
+            slots: Vec::new(),
+            states: Vec::new(),
             outer2: Vec::new(),
-            is_acting: Vec::new(),
-            tag_of: Vec::new(),
             tags: Vec::new(),
             free_tags: Vec::new(),
             acting: Vec::new(),
@@ -115,8 +125,10 @@ impl Calls {
         }
     }
 
-    fn is_alive(&self, i: usize) -> bool {
-        self.outer2[i] != DEAD
+    /// The place of the state of a source that is alive.
+    fn slot(&self, source: u32) -> Option<usize> {
+        let slot = self.slots[source as usize];
+        (slot != NONE && self.outer2[slot as usize] != DEAD).then_some(slot as usize)
     }
 
     /// How far a node can matter to a source: by calling or by having come.
@@ -151,8 +163,31 @@ impl Calls {
         around
     }
 
+    /// Drops the states of the dead and puts the others in order of place.
+    fn tidy(&mut self) {
+        let size = self.bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
+        let key = |p: DVec2| {
+            let place = ((p - self.bounds.min) / size * f64::from(u16::MAX)).max(DVec2::ZERO);
+            spread(place.x as u32) | spread(place.y as u32) << 1
+        };
+        let mut order: Vec<(u64, u32)> = Vec::with_capacity(self.living);
+        for (i, state) in self.states.iter().enumerate() {
+            if self.outer2[i] == DEAD {
+                self.slots[state.source as usize] = NONE;
+            } else {
+                order.push((key(state.place), i as u32));
+            }
+        }
+        order.sort_unstable();
+        self.states = order.iter().map(|&(_, i)| self.states[i as usize]).collect();
+        self.outer2 = order.iter().map(|&(_, i)| self.outer2[i as usize]).collect();
+        for (slot, state) in self.states.iter().enumerate() {
+            self.slots[state.source as usize] = slot as u32;
+        }
+    }
+
     fn store(&mut self, i: usize, around: Around) {
-        self.around[i] = around;
+        self.states[i].around = around;
         self.outer2[i] = around.most2();
     }
 
@@ -161,18 +196,18 @@ impl Calls {
         if self.convex {
             return true;
         }
-        if let Some(sight) = self.around[i].sight(k) {
+        if let Some(sight) = self.states[i].around.sight(k) {
             return sight;
         }
-        let (p, q) = (self.positions[i], at.nodes.position(node));
+        let (p, q) = (self.states[i].place, at.nodes.position(node));
         if at.blade.blocks_sight_for_ever(p, q) {
-            self.around[i].set_sight(k, false);
+            self.states[i].around.set_sight(k, false);
             return false;
         }
         let clear = !at.blade.blocks_sight_yet(p, q, at.step);
         if clear {
             // The blade only gains tissue: what is clear stays clear.
-            self.around[i].set_sight(k, true);
+            self.states[i].around.set_sight(k, true);
         }
         clear
     }
@@ -182,39 +217,44 @@ impl Calls {
         let p = nodes.position(node);
         let search = self.search(metric);
         let (search2, kill2) = (search * search, self.kill2(metric));
-        let Self { index, positions, around, outer2, is_acting, arrived, reached, tag_of, .. } =
-            self;
-        let mut offer = |source: u32| {
-            let i = source as usize;
-            let distance2 = metric.distance_squared(positions[i], p);
+        let slots = self.states.len() as u32;
+        let Self { index, states, outer2, arrived, reached, .. } = self;
+        let mut offer = |slot: u32, about2: f64| {
+            let i = slot as usize;
+            if about2 * (1.0 - 1e-9) >= outer2[i] {
+                return;
+            }
+            let state = &mut states[i];
+            let distance2 = metric.distance_squared(state.place, p);
             if distance2 >= outer2[i] || distance2 > search2 {
                 return;
             }
-            around[i].offer(positions[i], node, p, distance2, nodes, metric);
-            outer2[i] = around[i].most2();
-            if !is_acting[i] {
-                is_acting[i] = true;
-                arrived.push(source);
+            state.around.offer(state.place, node, p, distance2, nodes, metric);
+            outer2[i] = state.around.most2();
+            if !state.is_acting {
+                state.is_acting = true;
+                arrived.push(state.source);
             }
-            if distance2 <= kill2 && tag_of[i] == NONE {
-                reached.push(source);
+            if distance2 <= kill2 && state.tag == NONE {
+                reached.push(state.source);
             }
         };
         if search.is_finite() {
             // The tree knows only the frame of the mature leaf, where the circle is an ellipse.
             let radius = metric.reach(search).max_element();
-            index.for_each_within(p, radius, positions.len(), |source, _| offer(source));
+            let scale2 = metric.stretch.min_element().powi(2);
+            index.for_each_within(p, radius, |slot, about2| offer(slot, about2 * scale2));
         } else {
-            (0..positions.len() as u32).for_each(offer);
+            (0..slots).for_each(|slot| offer(slot, 0.0));
         }
     }
 
     /// Which of the relative neighbours of a tagged source it waits for: those it was tagged with and
     /// what grew out of them.
     fn follow_tag(&mut self, i: usize, nodes: &Nodes) {
-        let tag = &mut self.tags[self.tag_of[i] as usize];
+        let tag = &mut self.tags[self.states[i].tag as usize];
         let mut veins = [NONE; SECTORS];
-        for (k, node, _) in self.around[i].neighbours() {
+        for (k, node, _) in self.states[i].around.neighbours() {
             let is_of = |vein: NodeId| tag.veins.contains(&vein);
             if is_of(node) || nodes.graph().parent(node).is_some_and(is_of) {
                 veins[k] = node;
@@ -228,7 +268,7 @@ impl Calls {
         let limit2 = self.search(metric).powi(2);
         let mut veins = [NONE; SECTORS];
         let mut farthest2 = 0.0f64;
-        let around = self.around[i];
+        let around = self.states[i].around;
         for (k, node, distance2) in around.neighbours() {
             if distance2 <= limit2 && self.sees(i, k, node, at) {
                 veins[k] = node;
@@ -237,7 +277,7 @@ impl Calls {
         }
         let steps = PATIENCE * farthest2.sqrt() / metric.length(self.step_mm);
         let tag = Tag { veins, last_step: at.step + steps.ceil() as u64 };
-        self.tag_of[i] = match self.free_tags.pop() {
+        self.states[i].tag = match self.free_tags.pop() {
             Some(place) => {
                 self.tags[place as usize] = tag;
                 place
@@ -251,15 +291,15 @@ impl Calls {
 
     /// Removes a source; the veins that have come to it, the first that grew first.
     fn remove(&mut self, i: usize, kill2: f64) -> Vec<NodeId> {
-        let tag = self.tags[self.tag_of[i] as usize];
+        let tag = self.tags[self.states[i].tag as usize];
         let come = |&(k, node, distance2): &(usize, NodeId, f64)| {
             tag.veins[k] == node && distance2 <= kill2
         };
         let mut veins: Vec<NodeId> =
-            self.around[i].neighbours().filter(come).map(|(_, node, _)| node).collect();
+            self.states[i].around.neighbours().filter(come).map(|(_, node, _)| node).collect();
         veins.sort_unstable();
-        self.free_tags.push(self.tag_of[i]);
-        self.tag_of[i] = NONE;
+        self.free_tags.push(self.states[i].tag);
+        self.states[i].tag = NONE;
         self.outer2[i] = DEAD;
         self.living -= 1;
         veins
@@ -281,32 +321,30 @@ impl Calls {
         let mut dead = Vec::new();
         let mut meetings = Vec::new();
         reached.retain(|&source| {
-            let i = source as usize;
-            if !self.is_alive(i) {
-                return false;
-            }
+            let Some(i) = self.slot(source) else { return false };
             let at = At { blade, step, nodes };
-            if self.tag_of[i] == NONE {
-                if self.around[i].least2() > kill2 {
+            if self.states[i].tag == NONE {
+                if self.states[i].around.least2() > kill2 {
                     return false;
                 }
                 self.tag(i, metric, at);
             } else {
                 self.follow_tag(i, nodes);
             }
-            let tag = self.tags[self.tag_of[i] as usize];
+            let tag = self.tags[self.states[i].tag as usize];
             let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
                 tag.veins[k] == node && distance2 > kill2
             };
-            let waits =
-                patience && step < tag.last_step && self.around[i].neighbours().any(is_on_its_way);
+            let waits = patience
+                && step < tag.last_step
+                && self.states[i].around.neighbours().any(is_on_its_way);
             if waits {
                 return true;
             }
             let veins = self.remove(i, kill2);
             dead.push(source);
             if veins.len() > 1 {
-                meetings.push((self.positions[i], veins));
+                meetings.push((self.states[i].place, veins));
             }
             false
         });
@@ -338,7 +376,7 @@ impl Calls {
     ) -> open::Calls {
         let mut calls = open::Calls::new(spec, blade);
         for (i, &p) in self.positions.iter().enumerate() {
-            if self.is_alive(i) {
+            if self.slot(i as u32).is_some() {
                 calls.add(p, nodes, metric);
             } else {
                 calls.add_spent(p);
@@ -370,10 +408,11 @@ impl Callers for Calls {
         let around = self.look_around(p, nodes, metric);
         let least2 = around.least2();
         self.positions.push(p);
+        self.slots.push(self.states.len() as u32);
         self.outer2.push(around.most2());
-        self.around.push(around);
-        self.tag_of.push(NONE);
-        self.is_acting.push(least2.is_finite());
+        let is_acting = least2.is_finite();
+        self.index.push();
+        self.states.push(State { place: p, around, source: id, tag: NONE, is_acting });
         if least2.is_finite() {
             self.arrived.push(id);
         }
@@ -384,9 +423,9 @@ impl Callers for Calls {
     }
 
     fn keep_index(&mut self) {
-        if self.reach_mm.is_finite() {
-            let outer2 = &self.outer2;
-            self.index.keep(&self.positions, self.living, |i| outer2[i] != DEAD);
+        if self.reach_mm.is_finite() && self.index.is_stale(self.living) {
+            self.tidy();
+            self.index.build(self.states.iter().map(|state| state.place));
         }
     }
 
@@ -412,34 +451,31 @@ impl Callers for Calls {
         // Ascending: sums over callers are taken in the order of their ids, because floating-point
         // addition is not associative.
         acting.retain(|&source| {
-            let i = source as usize;
-            if !self.is_alive(i) {
-                return false;
-            }
+            let Some(i) = self.slot(source) else { return false };
             if self.deforms {
-                let around = self.look_around(self.positions[i], nodes, metric);
+                let around = self.look_around(self.states[i].place, nodes, metric);
                 self.store(i, around);
             }
-            let around = self.around[i];
+            let around = self.states[i].around;
             if around.least2() > search2 {
                 // Distances only grow: those nodes will not matter again.
-                self.is_acting[i] = false;
+                self.states[i].is_acting = false;
                 self.store(i, Around::EMPTY);
                 return false;
             }
-            if self.tag_of[i] != NONE {
+            if self.states[i].tag != NONE {
                 self.follow_tag(i, nodes);
             }
             for (k, node, distance2) in around.neighbours() {
                 let is_called = distance2 > kill2
                     && distance2 <= reach2
-                    && (self.tag_of[i] == NONE
-                        || self.tags[self.tag_of[i] as usize].veins[k] == node)
+                    && (self.states[i].tag == NONE
+                        || self.tags[self.states[i].tag as usize].veins[k] == node)
                     && self.sees(i, k, node, at);
                 if !is_called {
                     continue;
                 }
-                let towards = (self.positions[i] - nodes.position(node)) * metric.stretch;
+                let towards = (self.states[i].place - nodes.position(node)) * metric.stretch;
                 let unit = towards / distance2.sqrt();
                 let call = self.calls.len() as u32;
                 self.calls.push(Call { unit, distance2, next: NONE });
@@ -500,13 +536,13 @@ impl Callers for Calls {
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached {
         let mut unreached = Unreached::default();
         let search2 = self.search(blade.metric(blade.last_step())).powi(2);
-        for i in (0..self.positions.len()).filter(|&i| self.is_alive(i)) {
+        for i in (0..self.states.len()).filter(|&i| self.outer2[i] != DEAD) {
             let hidden = |node: NodeId| {
                 let step = blade.last_step();
-                blade.blocks_sight(self.positions[i], nodes.position(node), step)
+                blade.blocks_sight(self.states[i].place, nodes.position(node), step)
             };
-            match self.around[i].nearest() {
-                Some((distance2, node)) if distance2 <= search2 && self.is_acting[i] => {
+            match self.states[i].around.nearest() {
+                Some((distance2, node)) if distance2 <= search2 && self.states[i].is_acting => {
                     if hidden(node) {
                         unreached.hidden += 1;
                     } else {
@@ -526,4 +562,13 @@ impl Calls {
         let call = |at: u32| (at != NONE).then(|| &self.calls[at as usize]);
         std::iter::successors(call(self.called[node as usize].first), move |last| call(last.next))
     }
+}
+
+/// The lower sixteen bits with a zero before each.
+fn spread(bits: u32) -> u64 {
+    let mut x = u64::from(bits & 0xffff);
+    x = (x | x << 8) & 0x00ff_00ff;
+    x = (x | x << 4) & 0x0f0f_0f0f;
+    x = (x | x << 2) & 0x3333_3333;
+    (x | x << 1) & 0x5555_5555
 }

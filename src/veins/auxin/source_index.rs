@@ -11,53 +11,44 @@ const NEWBORN: usize = 64;
 /// dead. Building takes about as long as one search in ten finds.
 const THINNED: f64 = 0.5;
 
-/// Which sources lie within a radius of a place.
+/// Which sources lie within a radius of a place. They are known by their order.
 #[derive(Debug)]
 pub(super) struct SourceIndex {
     index: PointIndex,
-    /// The source of each point of the index.
-    indexed: Vec<u32>,
-    /// The first source that is not in the index.
-    unindexed: usize,
+    /// How many are in the index.
+    indexed: usize,
+    /// How many there are.
+    len: usize,
 }
 
 impl SourceIndex {
     pub(super) fn new() -> Self {
-        Self { index: PointIndex::new(&[]), indexed: Vec::new(), unindexed: 0 }
+        Self { index: PointIndex::new(&[]), indexed: 0, len: 0 }
     }
 
-    /// Builds the index anew once enough sources were born or died since.
-    pub(super) fn keep(
-        &mut self,
-        positions: &[DVec2],
-        living: usize,
-        is_alive: impl Fn(usize) -> bool,
-    ) {
-        let outside = positions.len() - self.unindexed;
-        let grown = outside > NEWBORN.max(self.indexed.len() / 4);
-        let inside = living.saturating_sub(outside) as f64;
-        if !grown && inside >= THINNED * self.indexed.len() as f64 {
-            return;
-        }
-        self.indexed = (0..positions.len() as u32).filter(|i| is_alive(*i as usize)).collect();
-        let points: Vec<DVec2> = self.indexed.iter().map(|&i| positions[i as usize]).collect();
-        self.index = PointIndex::new(&points);
-        self.unindexed = positions.len();
+    /// Takes note of a source at the end.
+    pub(super) fn push(&mut self) {
+        self.len += 1;
+    }
+
+    /// Whether so many were born or died that it should be built anew.
+    pub(super) fn is_stale(&self, living: usize) -> bool {
+        let newborn = self.len - self.indexed;
+        let inside = living.saturating_sub(newborn) as f64;
+        newborn > NEWBORN.max(self.indexed / 4) || inside < THINNED * self.indexed as f64
+    }
+
+    /// Builds it over these sources.
+    pub(super) fn build(&mut self, places: impl Iterator<Item = DVec2>) {
+        let places: Vec<DVec2> = places.collect();
+        self.index = PointIndex::new(&places);
+        (self.indexed, self.len) = (places.len(), places.len());
     }
 
     /// Calls `visit` with every source within `radius` of `p` (up to rounding), its squared distance
     /// up to rounding, and with all newborn ones, at no distance.
-    pub(super) fn for_each_within(
-        &self,
-        p: DVec2,
-        radius: f64,
-        sources: usize,
-        mut visit: impl FnMut(u32, f64),
-    ) {
-        let indexed = &self.indexed;
-        self.index.for_each_within(p, radius, |point, about2| {
-            visit(indexed[point as usize], about2);
-        });
-        (self.unindexed as u32..sources as u32).for_each(|source| visit(source, 0.0));
+    pub(super) fn for_each_within(&self, p: DVec2, radius: f64, mut visit: impl FnMut(u32, f64)) {
+        self.index.for_each_within(p, radius, &mut visit);
+        (self.indexed as u32..self.len as u32).for_each(|source| visit(source, 0.0));
     }
 }

@@ -117,6 +117,9 @@ struct Found2d {
 /// Files of text are not larger than this (bytes).
 const MOST_TEXT: u64 = 32 << 20;
 
+/// Outlines of fewer points get more on their edges.
+const FEW_POINTS: usize = 32;
+
 /// Reads a leaf outline from a PNG, JPEG, CSV or SVG file.
 ///
 /// # Errors
@@ -142,6 +145,7 @@ fn read(path: &Path, options: &OutlineOptions) -> Result<ImportedOutline, Outlin
         Some(format) => from_picture(path, format, options)?,
         None => from_text(path, file, &head, options)?,
     };
+    thin(&mut found.traced);
     mend(&mut found)?;
     place(found, options)
 }
@@ -226,6 +230,20 @@ fn from_text(
     let y_down = is_svg || !options.y_up;
     let traced = Traced { outline, cuts: Vec::new(), notes };
     Ok(Found2d { traced, kind: OutlineKind::Polygon, unit: 1.0, y_down })
+}
+
+/// Outlines of more points than this are thinned: 8192 texels show no more.
+const MANY_POINTS: usize = 16_384;
+
+/// Drops points that crowd.
+fn thin(traced: &mut Traced) {
+    let outline = &mut traced.outline;
+    if outline.len() > MANY_POINTS {
+        let given = outline.len();
+        let least = polygon::perimeter(outline) / MANY_POINTS as f64;
+        *outline = polygon::without_short_edges(outline, least);
+        traced.notes.push(format!("{given} points thinned to {}", outline.len()));
+    }
 }
 
 /// Takes small loops out of an outline that crosses itself.
@@ -315,8 +333,14 @@ fn place(found: Found2d, options: &OutlineOptions) -> Result<ImportedOutline, Ou
         })?;
     // Guarantees are the margin's to give.
     let hint = "mend the outline there";
-    let points = placed.outline.clone();
-    let margin = Margin::new(points, placed.apex, placed.cuts.clone(), hint)?;
+    let (mut points, mut apex) = (placed.outline.clone(), placed.apex);
+    if points.len() < FEW_POINTS {
+        // A diamond typed by hand is an outline too.
+        let tip = points[apex];
+        points = polygon::subdivided(&points, polygon::perimeter(&points) / FEW_POINTS as f64);
+        apex = points.iter().position(|p| *p == tip).unwrap_or(apex);
+    }
+    let margin = Margin::new(points, apex, placed.cuts.clone(), hint)?;
 
     let mut notes = traced.notes;
     let in_file = |p: DVec2| p * up * unit;

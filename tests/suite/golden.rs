@@ -136,14 +136,15 @@ fn golden_presets_front_and_back() {
 
 #[test]
 fn golden_colour_types() {
-    let types = ["uniform", "from-veins", "from-edges", "speckled"];
+    let types = [("uniform", 1.0), ("from-veins", 1.0), ("from-edges", 8.0), ("speckled", 2.5)];
     let panels: Vec<Panel> = types
         .iter()
-        .map(|word| {
+        .map(|(word, spread)| {
             let settings = [
                 &format!("colour.type={word}")[..],
-                "colour.spread_mm=7",
-                "colour.speckle_count=120",
+                &format!("colour.spread_mm={spread}"),
+                "colour.vein_spread=5",
+                "colour.speckle_count=160",
             ];
             let leaf = leaf(&document("lilac", &settings), 3, 512);
             panel(leaf.textures.front.base_colour, word)
@@ -223,4 +224,29 @@ fn golden_guided_veins() {
         panel(normals(back), "back, normal"),
     ];
     compare("readme_guides", &sheet("", &panels, 3, 480));
+}
+
+#[test]
+fn golden_particles_by_scatter_pattern() {
+    // Rodkaew 2002, figure 9.
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "lilac", "--by", "scatter", "--size", "300", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_scatter", &read(&folder.path().join("s.png")).expect("the sheet"));
+}
+
+#[test]
+fn every_picture_of_the_readme_is_here() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).expect("the README");
+    let pictures: Vec<&str> = readme
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .filter(|target| target.ends_with(".png"))
+        .collect();
+    assert!(pictures.len() >= 6, "{pictures:?}");
+    for picture in pictures {
+        assert!(root.join(picture).is_file(), "{picture} is missing");
+    }
 }

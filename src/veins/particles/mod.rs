@@ -8,7 +8,7 @@
 //! Source: Rodkaew, Siripant, Lursinsap and Chongstitvatana, "An algorithm for generating vein images
 //! for realistic modeling of a leaf", 2002, algorithms 1 and 2. Departs from it: the paper ignores
 //! the margin and fails where the petiole is hidden; here q̂ follows the shortest path inside the
-//! blade ([`steer`]) and particles that cannot see each other neither attract nor merge, unless
+//! blade (`steer`) and particles that cannot see each other neither attract nor merge, unless
 //! `steering` is `plain`. p̂ + q̂ is made a unit vector (a step has one length) and is q̂ where it
 //! vanishes. The width is Murray's law on the energy. Growth plays no part: particles flow in the
 //! finished blade.
@@ -67,7 +67,7 @@ parameters! {
         /// From particle to particle at the start; the finest veins are about as far apart.
         spacing_mm: number(2.0, 0.01..=1000.0, "mm"),
         /// How many particles start; 0 to take as many as the spacing gives.
-        count: count(0, 0..=1_000_000, "particles"),
+        count: count(0, 0..=50_000, "particles"),
         /// How far a particle moves in one step.
         step_mm: number(0.2, 0.001..=100.0, "mm"),
         /// Particles nearer to each other than this become one.

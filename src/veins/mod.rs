@@ -9,6 +9,7 @@ pub mod guides;
 pub mod metrics;
 pub mod orders;
 pub mod particles;
+pub mod planar;
 pub mod smooth;
 pub mod widths;
 

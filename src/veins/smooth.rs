@@ -3,7 +3,7 @@
 //! A vein that grew in a small leaf has few nodes far apart once the leaf is grown: it shows as a
 //! kinked line. Here nodes move towards the middle of their neighbours along the vein (a low pass),
 //! and long segments become pieces of Catmull–Rom curves. Roots, tips and guided veins stay; nothing
-//! crosses the margin.
+//! crosses the margin, and what would cross another vein stays as it grew.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::VeinSpec;
 use super::graph::{NodeId, VeinGraph};
-use super::widths;
+use super::{planar, widths};
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -51,8 +51,50 @@ pub fn smoothed(
     let inside = SegmentIndex::of_polygon(margin.outline());
     let blade = Blade { lines, inside };
     let heirs = heirs(&graph, spec);
-    let positions = low_pass(&graph, &heirs, &blade, spec.smoothing);
-    subdivided(&graph, &positions, &heirs, &blade, LONG * spec.node_step_mm, &nodes_after_step)
+    let longest = LONG * spec.node_step_mm;
+    let mut stiff = vec![false; graph.len()];
+    loop {
+        let positions = low_pass(&graph, &heirs, &blade, &stiff, spec.smoothing);
+        let shape = Shape { positions: &positions, heirs: &heirs, stiff: &stiff, blade: &blade };
+        let (finer, renumbered) = subdivided(&graph, shape, longest);
+        if !stiffen(&mut stiff, &graph, &finer, &renumbered) {
+            let count =
+                |old: &u32| old.checked_sub(1).map_or(0, |last| renumbered[last as usize] + 1);
+            let nodes_after_step = nodes_after_step.iter().map(count).collect();
+            return Smoothed { graph: finer, nodes_after_step };
+        }
+    }
+}
+
+/// Marks the ends of segments of which pieces cross; whether there are new ones.
+fn stiffen(
+    stiff: &mut [bool],
+    graph: &VeinGraph,
+    finer: &VeinGraph,
+    renumbered: &[NodeId],
+) -> bool {
+    let mut any = false;
+    // A node put into a segment comes just before the node at its end.
+    let origin = |node: NodeId| renumbered.partition_point(|&new| new < node) as NodeId;
+    for (a, b) in planar::crossing_edges(finer) {
+        let end = origin(b);
+        let grown = finer.parent(b) == Some(a);
+        let start = if grown { graph.parent(end).unwrap_or(end) } else { origin(a) };
+        for node in [start, end] {
+            any |= !std::mem::replace(&mut stiff[node as usize], true);
+        }
+    }
+    any
+}
+
+/// Where the nodes have come to and what else gives segments their form.
+#[derive(Clone, Copy)]
+struct Shape<'a> {
+    positions: &'a [DVec2],
+    heirs: &'a [Option<NodeId>],
+    /// Nodes that stay where they grew; segments between two of them stay straight.
+    stiff: &'a [bool],
+    blade: &'a Blade,
 }
 
 struct Blade {
@@ -85,6 +127,7 @@ fn low_pass(
     graph: &VeinGraph,
     heirs: &[Option<NodeId>],
     blade: &Blade,
+    stiff: &[bool],
     strength: f64,
 ) -> Vec<DVec2> {
     let home = graph.positions();
@@ -102,7 +145,7 @@ fn low_pass(
         for node in 0..graph.len() as NodeId {
             let i = node as usize;
             let (Some(parent), Some(heir)) = (graph.parent(node), heirs[i]) else { continue };
-            if graph.rank(node).is_some() {
+            if graph.rank(node).is_some() || stiff[i] {
                 continue;
             }
             let middle = before[parent as usize].midpoint(before[heir as usize]);
@@ -146,15 +189,9 @@ fn doubles(positions: &[DVec2]) -> Vec<NodeId> {
     same.flat_map(|pair| [pair[0].1, pair[1].1]).collect()
 }
 
-/// The graph with long segments as several, nodes renumbered.
-fn subdivided(
-    graph: &VeinGraph,
-    positions: &[DVec2],
-    heirs: &[Option<NodeId>],
-    blade: &Blade,
-    longest: f64,
-    nodes_after_step: &[u32],
-) -> Smoothed {
+/// The graph with long segments as several, and the new number of each node.
+fn subdivided(graph: &VeinGraph, shape: Shape<'_>, longest: f64) -> (VeinGraph, Vec<NodeId>) {
+    let positions = shape.positions;
     let mut finer = VeinGraph::new();
     let mut taken: HashSet<[u64; 2]> = positions.iter().map(|&p| bits(p)).collect();
     let mut renumbered: Vec<NodeId> = Vec::with_capacity(graph.len());
@@ -169,7 +206,7 @@ fn subdivided(
             continue;
         };
         let mut from = renumbered[parent as usize];
-        for p in between(graph, positions, heirs, blade, node, parent, longest) {
+        for p in between(graph, shape, node, parent, longest) {
             if taken.insert(bits(p)) {
                 from = finer.sprout(from, p);
                 if let Some(rank) = graph.rank(node) {
@@ -186,21 +223,18 @@ fn subdivided(
     for &(a, b) in graph.joins() {
         finer.join(renumbered[a as usize], renumbered[b as usize]);
     }
-    let count = |old: &u32| old.checked_sub(1).map_or(0, |last| renumbered[last as usize] + 1);
-    let nodes_after_step = nodes_after_step.iter().map(count).collect();
-    Smoothed { graph: finer, nodes_after_step }
+    (finer, renumbered)
 }
 
 /// The nodes to put into the segment from `parent` to `node`.
 fn between(
     graph: &VeinGraph,
-    positions: &[DVec2],
-    heirs: &[Option<NodeId>],
-    blade: &Blade,
+    shape: Shape<'_>,
     node: NodeId,
     parent: NodeId,
     longest: f64,
 ) -> Vec<DVec2> {
+    let Shape { positions, heirs, stiff, blade } = shape;
     let at = |node: NodeId| positions[node as usize];
     let (a, b) = (at(parent), at(node));
     let pieces = (a.distance(b) / longest).ceil() as usize;
@@ -225,6 +259,9 @@ fn between(
     // A curve is longer than its chord.
     let pieces = pieces + usize::from(pieces > 1);
     let shares = (1..pieces).map(|i| i as f64 / pieces as f64);
+    if stiff[parent as usize] && stiff[node as usize] {
+        return shares.map(|t| a.lerp(b, t)).collect();
+    }
     let points: Vec<DVec2> = shares.clone().map(curve).collect();
     let mut last = a;
     let free = points.iter().chain([&b]).all(|&p| {

@@ -1,12 +1,13 @@
 //! Closed venation: the fast path against the obvious one, and what loops promise.
 
 use venation::geometry::polygon::segments_touch;
+use venation::growth::{GrowingBlade, GrowthSpec};
 use venation::observer::Silent;
 use venation::seed::{Seed, Stage};
 use venation::veins::{Algorithm, VeinGraph, VeinSpec, auxin};
 
 use super::reference::{self, Frame};
-use super::veins::{for_all_cases, grown};
+use super::veins::{ellipse, for_all_cases, grown};
 
 /// A case of open venation, closed; every third with last veins that end free.
 fn closed(spec: &VeinSpec, seed: u64) -> VeinSpec {
@@ -65,4 +66,56 @@ fn closed_venation_is_planar_and_stays_inside() {
             }
         }
     });
+}
+
+/// Pieces that hang together, counting joins.
+fn components(graph: &VeinGraph) -> usize {
+    let mut group: Vec<usize> = (0..graph.len()).collect();
+    fn find(group: &mut [usize], mut i: usize) -> usize {
+        while group[i] != i {
+            group[i] = group[group[i]];
+            i = group[i];
+        }
+        i
+    }
+    for (a, b) in segments(graph) {
+        let (a, b) = (find(&mut group, a as usize), find(&mut group, b as usize));
+        group[a] = b;
+    }
+    (0..graph.len()).filter(|&i| find(&mut group, i) == i).count()
+}
+
+fn ends(graph: &VeinGraph) -> usize {
+    let mut degrees = vec![0; graph.len()];
+    for (a, b) in segments(graph) {
+        degrees[a as usize] += 1;
+        degrees[b as usize] += 1;
+    }
+    degrees.iter().filter(|&&degree| degree == 1).count()
+}
+
+#[test]
+fn areoles_are_counted_by_joins_and_the_last_veinlets_end_free() {
+    let blade = GrowingBlade::new(ellipse(), &GrowthSpec::default()).expect("a blade");
+    let grow = |closing_share: f64| {
+        let spec = VeinSpec {
+            algorithm: Algorithm::AuxinClosed,
+            closing_share,
+            smoothing: 0.0,
+            ..VeinSpec::default()
+        };
+        let venation = grown(&blade, &spec, 5);
+        let graph = venation.graph();
+        let roots = (0..graph.len() as u32).filter(|&node| graph.parent(node).is_none()).count();
+        // Euler's formula: the bounded faces of a planar graph.
+        let faces = segments(graph).len() + components(graph) - graph.len();
+        assert_eq!(faces, graph.joins().len() + components(graph) - roots);
+        (faces, ends(graph))
+    };
+    let (loops, free_ends) = grow(1.0);
+    assert!(loops > 500, "{loops} areoles");
+    assert!(free_ends < loops / 4, "{free_ends} free ends among {loops} areoles");
+    let (loops, free_ends) = grow(0.8);
+    assert!(free_ends > loops / 4, "{free_ends} free ends among {loops} areoles");
+    assert_eq!(grow(0.0).0, 0, "open from the first step");
 }

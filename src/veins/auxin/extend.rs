@@ -48,8 +48,7 @@ pub(super) struct Nodes {
     step_mm: f64,
     far_cell_mm: f64,
     kill_mm: f64,
-    /// The edges, where veins can cross.
-    web: Option<Web>,
+    web: Web,
     meeting: Meeting,
 }
 
@@ -69,7 +68,7 @@ impl Nodes {
             Meeting::Join => 2.5 * step_mm,
         };
         let cell = |mm: f64| metric.reach(metric.length(mm)).max_element();
-        let web = (meeting == Meeting::Join).then(|| Web::new(bounds, cell(step_mm)));
+        let web = Web::new(bounds, cell(step_mm));
         let mut nodes = Self {
             graph: start,
             near: PointGrid::new(bounds, cell(step_mm)),
@@ -84,10 +83,8 @@ impl Nodes {
             nodes.near.push(node);
             nodes.far.push(node);
         }
-        if let Some(web) = &mut nodes.web {
-            let edges = nodes.graph.edges().chain(nodes.graph.joins().iter().copied());
-            edges.for_each(|edge| web.add(edge, nodes.graph.positions()));
-        }
+        let edges = nodes.graph.edges().chain(nodes.graph.joins().iter().copied());
+        edges.for_each(|edge| nodes.web.add(edge, nodes.graph.positions()));
         nodes
     }
 
@@ -115,10 +112,8 @@ impl Nodes {
     pub(super) fn refine(&mut self, metric: Metric) {
         self.near.refine(metric.reach(metric.length(self.step_mm)).max_element());
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element());
-        if let Some(web) = &mut self.web {
-            let cell = metric.reach(metric.length(self.step_mm)).max_element();
-            web.refine(cell, self.graph.positions());
-        }
+        let cell = metric.reach(metric.length(self.step_mm)).max_element();
+        self.web.refine(cell, self.graph.positions());
     }
 
     /// From now on veins stop where they would cross another.
@@ -244,21 +239,17 @@ impl Nodes {
         let node = self.graph.sprout(parent, p);
         self.near.push(p);
         self.far.push(p);
-        if let Some(web) = &mut self.web {
-            web.add((parent, node), self.graph.positions());
-        }
+        self.web.add((parent, node), self.graph.positions());
         node
     }
 
     fn join(&mut self, a: NodeId, b: NodeId) {
         self.graph.join(a, b);
-        if let Some(web) = &mut self.web {
-            web.add((a, b), self.graph.positions());
-        }
+        self.web.add((a, b), self.graph.positions());
     }
 
     fn crossed(&self, p: DVec2, q: DVec2, apart: [NodeId; 2]) -> Option<Edge> {
-        self.web.as_ref()?.crossed(p, q, apart, self.graph.positions())
+        self.web.crossed(p, q, apart, self.graph.positions())
     }
 
     /// Whether an edge from a node would lie on one that it has: back along it, or the same way
@@ -266,18 +257,16 @@ impl Nodes {
     fn overlaps(&self, node: NodeId, p: DVec2, metric: Metric) -> bool {
         let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
         let stretched = |v: DVec2| v * metric.stretch;
-        let web = self.web.as_ref();
-        web.is_some_and(|web| web.overlaps(node, p, least, stretched, self.graph.positions()))
+        self.web.overlaps(node, p, least, stretched, self.graph.positions())
     }
 
     /// Whether two nodes are on one vein, or next to each other on two that have met.
     fn are_close(&self, a: NodeId, b: NodeId, metric: Metric) -> bool {
-        let Some(web) = &self.web else { return false };
         let limit = metric.length(LEAST_WAY_ROUND * self.kill_mm);
         let length = |a: NodeId, b: NodeId| {
             metric.distance_squared(self.position(a), self.position(b)).sqrt()
         };
-        web.are_beside(a, b) || web.is_way_within(a, b, limit, length)
+        self.web.are_beside(a, b) || self.web.is_way_within(a, b, limit, length)
     }
 
     /// Ends a vein at the nearer end of an edge in its way, if that can be reached.

@@ -1,8 +1,6 @@
-//! What only closed venation does: relative neighbours, tags, meetings, and what stands in the way.
+//! Relative neighbours, tags and meetings of closed venation, and veins in each other's way.
 
 use glam::DVec2;
-
-use venation::veins::Algorithm;
 
 use super::{Source, World};
 
@@ -195,9 +193,6 @@ impl World<'_> {
 
     /// Whether a vein stands in the way of a step; in closed venation the step may end in a join.
     pub(super) fn stops(&mut self, node: usize, child: DVec2) -> bool {
-        if self.spec.algorithm == Algorithm::AuxinOpen {
-            return false;
-        }
         if self.overlaps(node, child) {
             return true;
         }

@@ -116,6 +116,7 @@ fn in_outline(preset: &str, file: &str, settings: &[&str]) -> Document {
     let imported = outline::import(&path, &options).expect("the fixture imports");
     let mut document = document(preset, settings);
     use venation::document::Value;
+    document.set("margin.length_mm=70", "golden").expect("a valid setting");
     document.insert("margin.kind", Value::Text("polygon".into()), "golden");
     document.insert("margin.polygon_mm", Value::Points(imported.polygon_mm), "golden");
     document.insert("margin.cuts_mm", Value::Lines(imported.cuts_mm), "golden");

@@ -132,7 +132,7 @@ fn golden_presets_front_and_back() {
         panels.push(panel(leaf.textures.front.base_colour, &name));
         panels.push(panel(leaf.textures.back.base_colour, "back"));
     }
-    compare("readme_presets", &sheet("presets", &panels, 4, 384));
+    compare("readme_presets", &sheet("presets", &panels, 6, 320));
 }
 
 #[test]

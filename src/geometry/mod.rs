@@ -8,6 +8,7 @@ pub mod point_index;
 pub mod polygon;
 pub mod scatter;
 pub mod segments;
+pub mod sparse;
 
 pub use glam::DVec2;
 

@@ -49,6 +49,8 @@ pub struct Measure {
     pub sources: usize,
     /// Vein nodes.
     pub nodes: usize,
+    /// Joins, where veins met.
+    pub joins: usize,
     /// Steps made.
     pub steps: u64,
     /// Time of the growth alone, without widths (s, wall clock of one thread).
@@ -202,6 +204,7 @@ fn measure(
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),
+        joins: grown.graph.joins().len(),
         steps: grown.nodes_after_step.len() as u64,
         seconds,
         cpu_seconds,
@@ -351,6 +354,7 @@ mod tests {
         let measure = |n: usize| Measure {
             sources: n,
             nodes: n,
+            joins: 0,
             steps: 1,
             seconds: 1.0,
             cpu_seconds: (n * n) as f64,

@@ -9,7 +9,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if let Some(message) = failure.message() {
-                eprintln!("venation: {message}");
+                cli::complain(message);
             }
             ExitCode::from(failure.code())
         }

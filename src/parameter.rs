@@ -1,6 +1,6 @@
 //! The knobs of a leaf: name, unit, limits and meaning, each written once.
 //!
-//! A stage declares its settings with [`parameters!`](crate::parameter::parameters): the macro makes
+//! A stage declares its settings with `parameters!`: the macro makes
 //! the plain struct that the stage works with (numbers already drawn) and the list of
 //! [`Parameter`]s from which documents are checked, help is printed and complete files are written.
 //! Ranges live in the document only ([`crate::document`]); a stage never sees one.

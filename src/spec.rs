@@ -10,6 +10,16 @@ use crate::texture::relief::ReliefSpec;
 use crate::veins::VeinSpec;
 
 parameters! {
+    /// What is written of a leaf.
+    pub struct OutputSpec {
+        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or none.
+        maps: text("basecolor,opacity,height,normal"),
+        /// Other files to write: some of obj, svg, json, graphml, csv; or none.
+        formats: text("obj"),
+    }
+}
+
+parameters! {
     /// A leaf, every value drawn.
     pub struct LeafSpec {
         /// Name of the leaf; files are called after it.
@@ -30,5 +40,7 @@ parameters! {
         relief: group(ReliefSpec, ReliefSpec::default()),
         /// Size of the pictures.
         texture: group(TextureSpec, TextureSpec::default()),
+        /// What is written.
+        output: group(OutputSpec, OutputSpec::default()),
     }
 }

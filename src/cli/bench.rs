@@ -8,6 +8,7 @@ use venation::benchmark::{self, BenchmarkError, Measure, Workload};
 use venation::margin::{self, Margin};
 use venation::presets;
 use venation::seed::Seed;
+use venation::veins::Algorithm;
 
 use super::Failure;
 
@@ -28,6 +29,9 @@ pub(crate) struct Args {
     /// Run a suite: `foster`, every row of the five tables of the report.
     #[arg(long)]
     suite: Option<Suite>,
+    /// Grow closed venation (veins meet and form loops) on the standard leaf or the workload.
+    #[arg(long, conflicts_with = "suite")]
+    closed: bool,
     /// Runs of each; the median time counts.
     #[arg(long, value_name = "N", default_value_t = 3,
           value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -99,6 +103,16 @@ struct Results {
     exponent: Option<f64>,
 }
 
+impl Args {
+    /// A workload with the venation asked for.
+    fn grown_as(&self, mut workload: Workload) -> Workload {
+        if self.closed {
+            workload.veins.algorithm = Algorithm::AuxinClosed;
+        }
+        workload
+    }
+}
+
 /// Runs the benchmark and prints its table to `out`.
 pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
     super::refuse_existing(args.json.iter().chain(&args.csv), args.force)?;
@@ -108,7 +122,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
         results.lines.push(line);
         Ok(())
     };
-    let head = ["", "auxins", "nodes", "steps", "CPU s", "wall s"];
+    let head = ["", "auxins", "nodes", "joins", "steps", "CPU s", "wall s"];
     writeln!(out, "{}  not reached", columns(head.map(String::from)))?;
     if let Some(Suite::Foster) = args.suite {
         let blade = beech()?;
@@ -120,7 +134,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
         }
     } else if !args.workload.is_empty() {
         for path in &args.workload {
-            let workload = read(path)?;
+            let workload = args.grown_as(read(path)?);
             let named = |source| Error::Workload { path: path.clone(), source };
             let measure = median(args.runs, || benchmark::run(&workload)).map_err(named)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -129,6 +143,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
     } else {
         for &count in &args.auxins {
             let workload = benchmark::standard_workload(count as usize, Seed(args.seed));
+            let workload = args.grown_as(workload);
             let measure = median(args.runs, || benchmark::run(&workload)).map_err(Error::Run)?;
             add(out, Line { name: "standard".into(), printed_seconds: None, measure })?;
         }
@@ -167,9 +182,9 @@ fn median(
     Ok(measures.swap_remove(measures.len() / 2))
 }
 
-fn columns(cells: [String; 6]) -> String {
-    let [name, sources, nodes, steps, cpu, wall] = cells;
-    format!("{name:<28}{sources:>8}{nodes:>9}{steps:>7}{cpu:>10}{wall:>10}")
+fn columns(cells: [String; 7]) -> String {
+    let [name, sources, nodes, joins, steps, cpu, wall] = cells;
+    format!("{name:<28}{sources:>8}{nodes:>9}{joins:>8}{steps:>7}{cpu:>10}{wall:>10}")
 }
 
 fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
@@ -178,6 +193,7 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
         line.name.clone(),
         m.sources.to_string(),
         m.nodes.to_string(),
+        m.joins.to_string(),
         m.steps.to_string(),
         format!("{:.4}", m.cpu_seconds),
         format!("{:.4}", m.seconds),
@@ -194,15 +210,16 @@ fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
 
 fn csv(lines: &[Line]) -> String {
     let mut text = String::from(
-        "name,printed_seconds,auxins,nodes,steps,cpu_seconds,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
+        "name,printed_seconds,auxins,nodes,joins,steps,cpu_seconds,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
     );
     for Line { name, printed_seconds, measure: m } in lines {
         let printed = printed_seconds.map_or(String::new(), |seconds| seconds.to_string());
         let left = &m.unreached;
         text += &format!(
-            "{name},{printed},{},{},{},{},{},{},{},{},{},{}\n",
+            "{name},{printed},{},{},{},{},{},{},{},{},{},{},{}\n",
             m.sources,
             m.nodes,
+            m.joins,
             m.steps,
             m.cpu_seconds,
             m.seconds,

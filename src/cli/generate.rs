@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::Serialize;
-use venation::document::{Comments, Document};
+use venation::document::{Comments, Document, Value};
 use venation::io::write::{Overwrite, collisions, write_files};
 use venation::io::{self, FormatKind, LeafFiles, MapKind};
 use venation::pipeline;
@@ -38,12 +38,13 @@ pub(crate) struct Args {
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
-    /// Maps to write: basecolor, opacity, height, normal, bump.
-    #[arg(long, value_name = "LIST", default_value = "basecolor,opacity,height,normal")]
-    maps: String,
-    /// Other files to write: obj, svg, json, graphml, csv.
-    #[arg(long, value_name = "LIST", default_value = "obj")]
-    format: String,
+    /// Maps to write: basecolor, opacity, height, normal, bump; or none [default: the file's, else
+    /// basecolor,opacity,height,normal].
+    #[arg(long, value_name = "LIST")]
+    maps: Option<String>,
+    /// Other files to write: obj, svg, json, graphml, csv; or none [default: the file's, else obj].
+    #[arg(long, value_name = "LIST")]
+    format: Option<String>,
     /// Folder to write into [default: the leaf's name].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -68,6 +69,10 @@ struct Job {
     folder: PathBuf,
     /// The settings as they will stand in leaf.toml.
     toml: String,
+    /// The maps to write.
+    maps: Vec<MapKind>,
+    /// The other files to write.
+    formats: Vec<FormatKind>,
 }
 
 /// What became of a leaf.
@@ -85,20 +90,23 @@ struct Made {
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    let maps = words("--maps", &args.maps, MapKind::ALL, MapKind::word)?;
-    let formats = words("--format", &args.format, FormatKind::ALL, FormatKind::word)?;
-    let document = args.leaf.document(context)?;
+    let mut document = args.leaf.document(context)?;
+    if let Some(maps) = &args.maps {
+        document.insert("output.maps", Value::Text(maps.clone()), "--maps");
+    }
+    if let Some(formats) = &args.format {
+        document.insert("output.formats", Value::Text(formats.clone()), "--format");
+    }
     let jobs = jobs(args, &document)?;
-    let wanted = Wanted { maps, formats };
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
     // Nothing is grown before it is known that everything may be written.
     let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
-        jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
+        jobs.iter().filter(|job| !job.is_done(&wanted)).map(|job| (job, job.resume())).collect()
     } else {
         jobs.iter().map(|job| (job, overwrite)).collect()
     };
     for (job, overwrite) in &todo {
-        let names = io::file_names(&job.spec.name, &wanted.maps, &wanted.formats);
+        let names = io::file_names(&job.spec.name, &job.maps, &job.formats);
         let files = collisions(&job.folder, names.iter().map(String::as_str));
         if *overwrite == Overwrite::Refuse && !files.is_empty() {
             let folder = job.folder.clone();
@@ -109,17 +117,9 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let single = jobs.len() == 1;
     let quiet = context.quiet;
     let results: Vec<Result<Made, Failure>> = pool.install(|| {
-        todo.par_iter()
-            .map(|(job, overwrite)| make(job, &wanted, *overwrite, quiet || !single))
-            .collect()
+        todo.par_iter().map(|(job, overwrite)| make(job, *overwrite, quiet || !single)).collect()
     });
     report(args, context, &jobs, &todo, results)
-}
-
-/// What to write of each leaf.
-struct Wanted {
-    maps: Vec<MapKind>,
-    formats: Vec<FormatKind>,
 }
 
 fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
@@ -136,15 +136,20 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
         let folder = if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
         let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
-        Ok(Job { seed, spec, folder, toml })
+        let maps = words("output.maps", &spec.output.maps, MapKind::ALL, MapKind::word)?;
+        let all = FormatKind::ALL;
+        let formats = words("output.formats", &spec.output.formats, all, FormatKind::word)?;
+        Ok(Job { seed, spec, folder, toml, maps, formats })
     });
     jobs.collect()
 }
 
 impl Job {
-    /// Whether an earlier run finished this very leaf: the manifest is written last.
-    fn is_done(&self) -> bool {
-        self.same_settings() && self.folder.join("manifest.json").is_file()
+    /// Whether an earlier run finished this very leaf (the manifest is written last) and every
+    /// file that is wanted is there.
+    fn is_done(&self, wanted: &Wanted) -> bool {
+        let names = io::file_names(&self.spec.name, &wanted.maps, &wanted.formats);
+        self.same_settings() && names.iter().all(|name| self.folder.join(name).is_file())
     }
 
     fn same_settings(&self) -> bool {
@@ -158,8 +163,13 @@ impl Job {
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    /// Threads beyond any machine's take minutes to start and make nothing faster.
+    const MOST: usize = 1024;
     if threads == Some(0) {
         return Err(Failure::Input("--threads: 0 threads make no leaf; give 1 or more".into()));
+    }
+    if let Some(threads) = threads.filter(|&threads| threads > MOST) {
+        return Err(Failure::Input(format!("--threads: {threads} is more than {MOST}")));
     }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
@@ -167,7 +177,7 @@ fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
         .map_err(|error| Failure::Unexpected(format!("--threads: {error}")))
 }
 
-fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
+fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     let mut bar = Bar::new(quiet, "");
     let leaf = pipeline::generate(&job.spec, Seed(job.seed), &mut bar)?;
     let files = io::encode_leaf(&LeafFiles {
@@ -180,8 +190,8 @@ fn make(job: &Job, wanted: &Wanted, overwrite: Overwrite, quiet: bool) -> Result
         spec_toml: &job.toml,
         specularity: job.spec.relief.specularity,
         roughness: job.spec.relief.roughness,
-        maps: &wanted.maps,
-        formats: &wanted.formats,
+        maps: &job.maps,
+        formats: &job.formats,
     });
     write_files(&job.folder, &files, overwrite).map_err(|error| write_failure(&error))?;
     Ok(Made {
@@ -207,7 +217,7 @@ fn write_failure(error: &io::Error) -> Failure {
 
 /// The items of a comma-separated list of words; `none` is an empty list.
 fn words<T: Copy>(
-    flag: &str,
+    key: &str,
     list: &str,
     all: &[T],
     word: fn(T) -> &'static str,
@@ -218,7 +228,7 @@ fn words<T: Copy>(
     let find = |item: &str| {
         all.iter().copied().find(|&kind| word(kind) == item).ok_or_else(|| {
             let known: Vec<&str> = all.iter().map(|&kind| word(kind)).collect();
-            Failure::Input(format!("{flag}: `{item}` is none of {}", known.join(", ")))
+            Failure::Input(format!("{key}: `{item}` is none of {}", known.join(", ")))
         })
     };
     list.split(',').map(|item| find(item.trim())).collect()
@@ -244,7 +254,7 @@ fn report(
             Err(failure) => {
                 let problem = failure.message().unwrap_or_default().to_owned();
                 if jobs.len() > 1 {
-                    eprintln!("venation: seed {}: {problem}", job.seed);
+                    super::complain(&format!("seed {}: {problem}", job.seed));
                 }
                 list.push(Made {
                     seed: job.seed,

@@ -92,9 +92,19 @@ impl Context<'_> {
     /// A message for the person, on stderr.
     pub(crate) fn say(&self, message: &str) {
         if !self.quiet {
-            eprintln!("venation: {message}");
+            complain(message);
         }
     }
+}
+
+/// A message on stderr. It may quote file names and files: line breaks and terminal codes in them
+/// are escaped.
+pub(crate) fn complain(message: &str) {
+    let mut line = String::with_capacity(message.len());
+    for c in message.chars() {
+        if c.is_control() { line.extend(c.escape_default()) } else { line.push(c) }
+    }
+    eprintln!("venation: {line}");
 }
 
 const LONG_ABOUT: &str = "\

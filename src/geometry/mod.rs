@@ -7,6 +7,7 @@ pub mod point_grid;
 pub mod point_index;
 pub mod polygon;
 pub mod scatter;
+pub mod segment_grid;
 pub mod segments;
 pub mod sparse;
 

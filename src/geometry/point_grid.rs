@@ -175,6 +175,46 @@ impl PointGrid {
         false
     }
 
+    /// Calls `visit` with points from near to far, by rings of cells around `p`, for as long as
+    /// `more` says that points farther than a distance (in the grid's own frame) still matter.
+    pub fn for_each_outwards<T>(
+        &self,
+        state: &mut T,
+        p: DVec2,
+        mut more: impl FnMut(&mut T, f64) -> bool,
+        mut visit: impl FnMut(&mut T, u32, DVec2),
+    ) {
+        if self.points.len() <= FEW && self.removed == 0 {
+            for (id, &q) in self.points.iter().enumerate() {
+                visit(state, id as u32, q);
+            }
+            return;
+        }
+        let (column, row) = (self.column(p.x) as isize, self.row(p.y) as isize);
+        for ring in 0..=self.columns.max(self.rows) as isize {
+            if ring > 0 && !more(state, (ring - 1) as f64 * self.cell) {
+                return;
+            }
+            let mut look = |x: isize, y: isize| {
+                if x >= 0 && y >= 0 && x < self.columns as isize && y < self.rows as isize {
+                    for id in self.list(y as usize * self.columns + x as usize) {
+                        visit(state, id, self.points[id as usize]);
+                    }
+                }
+            };
+            for x in column - ring..=column + ring {
+                look(x, row - ring);
+                if ring > 0 {
+                    look(x, row + ring);
+                }
+            }
+            for y in row - ring + 1..row + ring {
+                look(column - ring, y);
+                look(column + ring, y);
+            }
+        }
+    }
+
     /// The point nearest to `p` within a squared distance of `limit2` (included), where distances
     /// are |(a − b)·stretch|.
     #[must_use]

@@ -141,6 +141,18 @@ pub fn resampled(polygon: &[DVec2], step: f64) -> Vec<DVec2> {
     points
 }
 
+/// The same boundary with points added on its edges, so that none is longer than `longest`.
+#[must_use]
+pub fn subdivided(polygon: &[DVec2], longest: f64) -> Vec<DVec2> {
+    let pieces = |a: DVec2, b: DVec2| (a.distance(b) / longest).ceil().max(1.0) as usize;
+    edges(polygon)
+        .flat_map(|(a, b)| {
+            let n = pieces(a, b);
+            (0..n).map(move |i| a.lerp(b, i as f64 / n as f64))
+        })
+        .collect()
+}
+
 /// The polygon without vertices that follow another within `least` (the last against the first
 /// too). Vertex 0 always stays.
 #[must_use]
@@ -227,6 +239,14 @@ mod tests {
         let points = resampled(&square(), 0.3);
         assert_eq!(points.len(), 27);
         assert!(points.iter().all(|p| (p.x * (2.0 - p.x) * p.y * (2.0 - p.y)).abs() < 1e-12));
+    }
+
+    #[test]
+    fn subdividing_keeps_the_vertices_and_shortens_the_edges() {
+        let points = subdivided(&square(), 0.7);
+        assert_eq!(points.len(), 12);
+        assert!(square().iter().all(|corner| points.contains(corner)));
+        assert!(edges(&points).all(|(a, b)| a.distance(b) <= 0.7));
     }
 
     #[test]

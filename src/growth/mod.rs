@@ -7,8 +7,8 @@
 //!
 //! Source: E. Foster, *Procedural leaf generation*, growth of the margin and appendix B.2, who moves
 //! every point in every step. Departs from it: the root is always the base of the blade, both
-//! printed formulas of the first margin are replaced by one ([`scales`]), and under marginal growth
-//! tissue never disappears again ([`marginal`]).
+//! printed formulas of the first margin are replaced by one (`scales`), and under marginal growth
+//! tissue never disappears again (`marginal`).
 
 mod marginal;
 mod overlap;

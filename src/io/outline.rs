@@ -117,6 +117,9 @@ struct Found2d {
 /// Files of text are not larger than this (bytes).
 const MOST_TEXT: u64 = 32 << 20;
 
+/// Outlines of fewer points get more on their edges.
+const FEW_POINTS: usize = 32;
+
 /// Reads a leaf outline from a PNG, JPEG, CSV or SVG file.
 ///
 /// # Errors
@@ -315,8 +318,14 @@ fn place(found: Found2d, options: &OutlineOptions) -> Result<ImportedOutline, Ou
         })?;
     // Guarantees are the margin's to give.
     let hint = "mend the outline there";
-    let points = placed.outline.clone();
-    let margin = Margin::new(points, placed.apex, placed.cuts.clone(), hint)?;
+    let (mut points, mut apex) = (placed.outline.clone(), placed.apex);
+    if points.len() < FEW_POINTS {
+        // A diamond typed by hand is an outline too.
+        let tip = points[apex];
+        points = polygon::subdivided(&points, polygon::perimeter(&points) / FEW_POINTS as f64);
+        apex = points.iter().position(|p| *p == tip).unwrap_or(apex);
+    }
+    let margin = Margin::new(points, apex, placed.cuts.clone(), hint)?;
 
     let mut notes = traced.notes;
     let in_file = |p: DVec2| p * up * unit;

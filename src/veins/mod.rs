@@ -32,6 +32,9 @@ words! {
     pub enum Algorithm {
         /// Veins grow towards auxin sources and never meet (Runions et al. 2005, open venation).
         AuxinOpen = "auxin-open",
+        /// Veins grow towards auxin sources and meet there, so that loops close (Runions et al. 2005,
+        /// closed venation).
+        AuxinClosed = "auxin-closed",
         /// Veins are the trails of particles that flow to the petiole (Rodkaew et al. 2002).
         Particles = "particles",
     }
@@ -64,6 +67,12 @@ parameters! {
         node_step_mm: number(0.3, 0.001..=100.0, "mm"),
         /// A source calls veins within this distance only; 0 for no limit.
         attraction_distance_mm: number(0.0, 0.0..=10_000.0, "mm"),
+        /// Closed venation: share of the steps in which veins close loops. In the rest they end free, as
+        /// in open venation: the finest veinlets of a real leaf.
+        closing_share: number(1.0, 0.0..=1.0, ""),
+        /// Closed venation, last steps that close no loops: spawn and kill distances there, relative to
+        /// those before. Below 1, sources find room inside the loops.
+        veinlet_scale: number(0.7, 0.1..=1.0, ""),
         /// Positions of auxin sources in the mature leaf, instead of darts.
         sources_mm: points(),
         /// Radius of the finest veins.
@@ -287,7 +296,7 @@ pub fn grow_from(
         }
     }
     let grown = match spec.algorithm {
-        Algorithm::AuxinOpen => {
+        Algorithm::AuxinOpen | Algorithm::AuxinClosed => {
             auxin::grow(spec, blade, start, &mut seed.stream(Stage::AuxinSources), observer)?
         }
         Algorithm::Particles => return trails(spec, blade, roots, seed, observer),
@@ -340,6 +349,8 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         "node_step_mm" => spec.node_step_mm,
         "attraction_distance_mm" => spec.attraction_distance_mm,
         "tip_radius_mm" => spec.tip_radius_mm,
+        "closing_share" => spec.closing_share,
+        "veinlet_scale" => spec.veinlet_scale,
         "smoothing" => spec.smoothing,
         "exponent_change" => spec.exponent_change,
         "least_radius_mm" => spec.least_radius_mm,

@@ -111,6 +111,17 @@ fn leaf_toml_run_again_gives_the_same_bytes() {
 }
 
 #[test]
+fn leaf_toml_remembers_what_was_written() {
+    let folder = fresh();
+    let arguments = ["generate", "willow", "-o", "one", "--maps", "bump", "--format", "svg,csv"];
+    succeed(folder.path(), &small(&arguments));
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "two"]);
+    assert_same(&folder.path().join("one"), &folder.path().join("two"));
+    succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "three", "--maps", "none"]);
+    assert!(!folder.path().join("three/salix-alba_Bump.png").exists());
+}
+
+#[test]
 fn an_outline_keeps_no_path_and_its_leaf_toml_gives_the_same_bytes() {
     let folder = fresh();
     let points: String = (0..60)
@@ -335,4 +346,38 @@ fn a_killed_run_leaves_whole_files_and_goes_on_where_it_stopped() {
         files
     };
     assert!(finished("killed") == finished("whole"));
+}
+
+#[test]
+fn skip_existing_makes_files_that_are_missing_or_newly_asked_for() {
+    let folder = fresh();
+    let arguments = small(&["generate", "beech", "-o", "out", "--skip-existing"]);
+    succeed(folder.path(), &arguments);
+    let out = folder.path().join("out");
+    let whole = contents(&out);
+    std::fs::remove_file(out.join("back/fagus-sylvatica_Height.png")).unwrap();
+    succeed(folder.path(), &arguments);
+    assert_eq!(contents(&out), whole);
+    succeed(folder.path(), &[&arguments[..], &["--format", "obj,svg"]].concat());
+    assert!(out.join("fagus-sylvatica.svg").is_file());
+}
+
+#[test]
+fn messages_stay_on_one_line_and_send_the_terminal_no_codes() {
+    let folder = fresh();
+    for arguments in
+        [&["generate", "a\nb\u{1b}[31m"][..], &["generate", "beech", "--set", "name=a\nb"]]
+    {
+        let message = fail(folder.path(), 2, arguments);
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(!message.contains('\u{1b}'), "{message:?}");
+    }
+}
+
+#[test]
+fn more_threads_than_any_machine_has_are_refused() {
+    let folder = fresh();
+    let message = fail(folder.path(), 2, &small(&["generate", "beech", "-t", "100000"]));
+    assert!(message.contains("--threads: 100000") && message.contains("1024"), "{message}");
+    assert!(contents(folder.path()).is_empty());
 }

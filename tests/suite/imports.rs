@@ -263,3 +263,14 @@ fn tips_and_bases_are_found_where_people_see_them() {
         assert!(errors.len() > 40 && median < 2.0 && most < 7.0 && worst < 10.0);
     }
 }
+
+#[test]
+fn a_diamond_typed_by_hand_is_an_outline() {
+    let folder = crate::support::fresh();
+    let path = folder.path().join("diamond.csv");
+    std::fs::write(&path, "50,100\n80,50\n50,0\n20,50\n").expect("the file");
+    let imported = import(&path, &OutlineOptions::default()).expect("a blade");
+    assert!(imported.polygon_mm.len() >= 8);
+    let highest = imported.polygon_mm.iter().map(|p| p[1]).fold(0.0, f64::max);
+    assert!((highest - 80.0).abs() < 1e-6, "{highest}");
+}

@@ -1,6 +1,7 @@
 //! The whole library and the program, from outside. One binary, so a small machine links once.
 
 mod cli; // the command line as a person types it: messages, exit codes, files
+mod closed; // closed venation: loops that close, against the same reference
 mod files; // what is written, read back by independent readers
 mod golden; // expected pictures, which are also the README's
 mod guides; // veins laid by architecture, in every preset
@@ -8,7 +9,7 @@ mod imports; // outlines from files, odd and broken ones too
 mod inspect; // measures of leaves, and graphs for other programs
 mod layers; // who may use whom
 mod presets; // every leaf that comes with venation
-mod reference; // open venation, slow and obvious
+mod reference; // open and closed venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
 mod support;
 mod textures; // what painting promises

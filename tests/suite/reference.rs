@@ -1,4 +1,6 @@
-//! Open venation the slow, obvious way: every step from scratch, every source against every node.
+//! Open and closed venation the slow, obvious way: every step from scratch, every source against every node.
+//!
+//! Closed venation chooses its calls and ends its sources in `reference/closing.rs`.
 //!
 //! The rules are written down again here, from Runions et al. (2005) and Foster's report, and share
 //! with the library only the blade (what is inside, what blocks sight) and the map from random
@@ -8,7 +10,10 @@ use glam::DVec2;
 use venation::geometry::scatter::PolygonScatter;
 use venation::growth::GrowingBlade;
 use venation::seed::Rng;
-use venation::veins::VeinSpec;
+use venation::veins::{Algorithm, VeinSpec};
+
+mod closing;
+use closing::Tag;
 
 /// In which frame distances are measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +28,22 @@ pub(crate) enum Frame {
 pub(crate) struct Reference {
     pub(crate) positions: Vec<DVec2>,
     pub(crate) parents: Vec<Option<usize>>,
+    pub(crate) joins: Vec<(usize, usize)>,
     pub(crate) alive: usize,
+}
+
+/// A living source.
+#[derive(Clone)]
+struct Source {
+    place: DVec2,
+    /// Once a vein has come to it, in closed venation.
+    tag: Option<Tag>,
+}
+
+impl Source {
+    fn new(place: DVec2) -> Self {
+        Self { place, tag: None }
+    }
 }
 
 struct World<'a> {
@@ -33,6 +53,9 @@ struct World<'a> {
     step: u64,
     positions: Vec<DVec2>,
     parents: Vec<Option<usize>>,
+    joins: Vec<(usize, usize)>,
+    /// Whether veins close loops now.
+    closing: bool,
 }
 
 impl World<'_> {
@@ -62,6 +85,17 @@ impl World<'_> {
         ((a - b) * self.stretch()).length_squared()
     }
 
+    /// Spawn and kill distances relative to the settings.
+    fn crowding(&self) -> f64 {
+        let is_last = self.spec.algorithm == Algorithm::AuxinClosed && !self.closing;
+        if is_last { self.spec.veinlet_scale } else { 1.0 }
+    }
+
+    fn kill(&self) -> f64 {
+        let least = self.spec.node_step_mm / 2.0;
+        self.length((self.spec.kill_distance_mm * self.crowding()).max(least))
+    }
+
     fn inside(&self, p: DVec2) -> bool {
         self.blade.is_inside(p / self.scale(), self.step)
     }
@@ -85,7 +119,10 @@ impl World<'_> {
     fn dart(&self, scatter: &PolygonScatter, rng: &mut Rng, sources: &[DVec2]) -> Option<DVec2> {
         let (u, v) = (rng.unit(), rng.unit());
         let p = scatter.point(u, v) * self.scale();
-        let far = |q: &DVec2, mm: f64| self.distance2(p, *q) >= self.length(mm) * self.length(mm);
+        let far = |q: &DVec2, mm: f64| {
+            let length = self.length(mm * self.crowding());
+            self.distance2(p, *q) >= length * length
+        };
         let free = sources.iter().all(|q| far(q, self.spec.source_spawn_distance_mm))
             && self.positions.iter().all(|q| far(q, self.spec.vein_spawn_distance_mm));
         free.then_some(p)
@@ -105,6 +142,9 @@ impl World<'_> {
         }
         if !self.inside(child) || self.hidden(from, child) {
             return None;
+        }
+        if self.stops(node, child) {
+            return Some(());
         }
         self.positions.push(child);
         self.parents.push(Some(node));
@@ -141,7 +181,7 @@ impl World<'_> {
     }
 }
 
-/// Grows open venation from `root` over at most `most_steps` steps.
+/// Grows venation from `root` over at most `most_steps` steps.
 pub(crate) fn grow(
     spec: &VeinSpec,
     blade: &GrowingBlade,
@@ -151,8 +191,19 @@ pub(crate) fn grow(
     most_steps: usize,
 ) -> Reference {
     let first = *blade.steps().start();
-    let mut world =
-        World { blade, spec, frame, step: first, positions: Vec::new(), parents: vec![None] };
+    let mut world = World {
+        blade,
+        spec,
+        frame,
+        step: first,
+        positions: Vec::new(),
+        parents: vec![None],
+        joins: Vec::new(),
+        closing: spec.algorithm == Algorithm::AuxinClosed,
+    };
+    let steps = blade.steps().count();
+    let closing_steps =
+        if world.closing { (spec.closing_share * steps as f64).round() as usize } else { steps };
     world.positions.push(root * world.scale());
     let scatter = PolygonScatter::new(blade.mature().outline());
     let given = !spec.sources_mm.is_empty();
@@ -160,32 +211,49 @@ pub(crate) fn grow(
     let mut waiting: Vec<DVec2> =
         spec.sources_mm.iter().map(|p| DVec2::from(*p)).filter(|p| blade.covers(*p)).collect();
     if !given && !darts_fall {
-        for _ in 0..(spec.spawn_rate * blade.steps().count() as f64) as u64 {
+        for _ in 0..(spec.spawn_rate * closing_steps as f64) as u64 {
             waiting.extend(world.dart(&scatter, rng, &waiting));
         }
     }
-    let mut sources: Vec<DVec2> = Vec::new();
+    // Where tissue stands still, a dart keeps its room for ever.
+    let thrown = waiting.clone();
+    let mut sources: Vec<Source> = Vec::new();
     let mut fraction = 0.0;
-    for step in blade.steps().take(most_steps) {
+    for (made, step) in blade.steps().take(most_steps).enumerate() {
         // Grow the blade and what is carried with it.
         let before = world.scale();
         world.step = step;
         if world.scale() != before {
             let carried = world.scale() / before;
             world.positions.iter_mut().for_each(|p| *p *= carried);
-            sources.iter_mut().for_each(|p| *p *= carried);
+            sources.iter_mut().for_each(|source| source.place *= carried);
+        }
+        if world.closing && made >= closing_steps {
+            // From here on veins end free, closer to each other.
+            world.settle(&mut sources, false);
+            world.closing = false;
+            if !given && !darts_fall {
+                let mut spaced: Vec<DVec2> = thrown.clone();
+                for _ in 0..(spec.spawn_rate * (steps - closing_steps) as f64) as u64 {
+                    if let Some(p) = world.dart(&scatter, rng, &spaced) {
+                        waiting.push(p);
+                        spaced.push(p);
+                    }
+                }
+            }
         }
         // Seed sources: those the margin has passed, and this step's darts.
         let scale = world.scale();
         let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
             waiting.into_iter().partition(|&p| blade.is_inside(p, step));
         waiting = rest;
-        sources.extend(born.into_iter().map(|p| p * scale));
+        sources.extend(born.into_iter().map(|p| Source::new(p * scale)));
         if darts_fall {
             fraction += spec.spawn_rate * blade.scale_at(step).element_product();
             while fraction >= 1.0 {
                 fraction -= 1.0;
-                sources.extend(world.dart(&scatter, rng, &sources));
+                let places: Vec<DVec2> = sources.iter().map(|source| source.place).collect();
+                sources.extend(world.dart(&scatter, rng, &places).map(Source::new));
             }
         }
         // Call.
@@ -194,7 +262,14 @@ pub(crate) fn grow(
             mm => world.length(mm),
         };
         let mut callers: Vec<Vec<DVec2>> = vec![Vec::new(); world.positions.len()];
-        for &p in &sources {
+        for source in &mut sources {
+            let p = source.place;
+            if world.closing {
+                for node in world.calls_of(source, reach) {
+                    callers[node].push(p);
+                }
+                continue;
+            }
             let (d2, node) = world.nearest(p);
             if d2 > 0.0 && d2 <= reach * reach && !world.hidden(p, world.positions[node]) {
                 callers[node].push(p);
@@ -205,8 +280,20 @@ pub(crate) fn grow(
             world.extend(node, callers);
         }
         // Kill.
-        let kill = world.length(spec.kill_distance_mm);
-        sources.retain(|&p| world.nearest(p).0 > kill * kill);
+        if world.closing {
+            world.settle(&mut sources, true);
+        } else {
+            let kill = world.kill();
+            sources.retain(|source| world.nearest(source.place).0 > kill * kill);
+        }
     }
-    Reference { positions: world.positions, parents: world.parents, alive: sources.len() }
+    if world.closing {
+        world.settle(&mut sources, false);
+    }
+    Reference {
+        positions: world.positions,
+        parents: world.parents,
+        joins: world.joins,
+        alive: sources.len(),
+    }
 }

@@ -86,7 +86,7 @@ fn case(
 }
 
 /// All kinds of cases, `each` of each.
-fn for_all_cases(each: u64, mut test: impl FnMut(&str, &GrowingBlade, &VeinSpec, u64)) {
+pub(crate) fn for_all_cases(each: u64, mut test: impl FnMut(&str, &GrowingBlade, &VeinSpec, u64)) {
     for &kind in GrowthType::ALL {
         for bits in 0..8 {
             let (concave, reach, given) = (bits & 1 > 0, bits & 2 > 0, bits & 4 > 0);
@@ -138,7 +138,7 @@ fn distances_that_shrink_agree_with_a_leaf_that_grows() {
     });
 }
 
-fn grown(blade: &GrowingBlade, spec: &VeinSpec, seed: u64) -> Venation {
+pub(crate) fn grown(blade: &GrowingBlade, spec: &VeinSpec, seed: u64) -> Venation {
     veins::grow(spec, blade, Seed(seed), &mut Silent).expect("veins")
 }
 

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::open::Calls;
+use super::callers::Callers;
+use super::web::{Edge, Web};
 use crate::geometry::point_grid::{Nearest, PointGrid};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::VeinSpec;
@@ -20,6 +21,23 @@ const LEAST_BETWEEN_NODES: f64 = 1e-3;
 /// rounding.
 const LEAST_PULL: f64 = 1.0 - 1e-9;
 
+/// A join may be this long, in steps. One that ends at a long edge (made when the blade was small) would
+/// run along it.
+const LONGEST_JOIN: f64 = 2.0;
+
+/// Where veins meet, the way round along other veins must be longer than this, in kill distances:
+/// below it both are one vein that passes on two sides of a source, and the loop would be a speck.
+const LEAST_WAY_ROUND: f64 = 2.0;
+
+/// What happens where a vein would cross another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// It stops.
+    Stop,
+    /// It joins it.
+    Join,
+}
+
 /// The veins so far.
 pub(super) struct Nodes {
     graph: VeinGraph,
@@ -29,6 +47,10 @@ pub(super) struct Nodes {
     far: PointGrid,
     step_mm: f64,
     far_cell_mm: f64,
+    kill_mm: f64,
+    /// The edges, where veins can cross.
+    web: Option<Web>,
+    meeting: Meeting,
 }
 
 impl Nodes {
@@ -37,21 +59,34 @@ impl Nodes {
         blade: &GrowingBlade,
         start: VeinGraph,
         metric: Metric,
+        meeting: Meeting,
     ) -> Self {
         let bounds = blade.mature().bounds();
         let step_mm = spec.node_step_mm;
-        let far_cell_mm = (2.0 * step_mm).max(spec.vein_spawn_distance_mm.min(10.0 * step_mm));
+        let far_cell_mm = match meeting {
+            Meeting::Stop => (2.0 * step_mm).max(spec.vein_spawn_distance_mm.min(10.0 * step_mm)),
+            // What stands between a source and a node is mostly looked for over a few steps.
+            Meeting::Join => 2.5 * step_mm,
+        };
         let cell = |mm: f64| metric.reach(metric.length(mm)).max_element();
+        let web = (meeting == Meeting::Join).then(|| Web::new(bounds, cell(step_mm)));
         let mut nodes = Self {
             graph: start,
             near: PointGrid::new(bounds, cell(step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             far_cell_mm,
+            kill_mm: spec.kill_distance_mm,
+            web,
+            meeting,
         };
         for &node in nodes.graph.positions() {
             nodes.near.push(node);
             nodes.far.push(node);
+        }
+        if let Some(web) = &mut nodes.web {
+            let edges = nodes.graph.edges().chain(nodes.graph.joins().iter().copied());
+            edges.for_each(|edge| web.add(edge, nodes.graph.positions()));
         }
         nodes
     }
@@ -80,6 +115,38 @@ impl Nodes {
     pub(super) fn refine(&mut self, metric: Metric) {
         self.near.refine(metric.reach(metric.length(self.step_mm)).max_element());
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element());
+        if let Some(web) = &mut self.web {
+            let cell = metric.reach(metric.length(self.step_mm)).max_element();
+            web.refine(cell, self.graph.positions());
+        }
+    }
+
+    /// From now on veins stop where they would cross another.
+    pub(super) fn end_free(&mut self) {
+        self.meeting = Meeting::Stop;
+    }
+
+    /// The nodes by place, in cells of a few steps.
+    pub(super) fn grid(&self) -> &PointGrid {
+        &self.far
+    }
+
+    /// Whether a node stands between a source at `s` and the `node` at a squared distance from it.
+    pub(super) fn stands_between(
+        &self,
+        s: DVec2,
+        node: NodeId,
+        distance2: f64,
+        metric: Metric,
+    ) -> bool {
+        let p = self.position(node);
+        // The box around both circles' common part.
+        let reach = metric.reach(distance2.sqrt() * (1.0 + 1e-9));
+        let (low, high) = (s.max(p) - reach, s.min(p) + reach);
+        self.far.any_near((low + high) / 2.0, (high - low) / 2.0, |id, q| {
+            let other2 = metric.distance_squared(s, q);
+            (other2, id) < (distance2, node) && metric.distance_squared(p, q) < distance2
+        })
     }
 
     /// Whether a node is nearer to `p` than `distance`.
@@ -102,16 +169,15 @@ impl Nodes {
     pub(super) fn extend(
         &mut self,
         node: NodeId,
-        calls: &Calls,
+        calls: &dyn Callers,
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
     ) {
         let mut pull = calls.pull(node);
-        let mut left = calls.callers(node).count();
+        let mut left = calls.count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
-            let units: Vec<DVec2> =
-                calls.callers(node).map(|source| calls.unit_to(source, self, metric)).collect();
+            let units = calls.units(node, self, metric);
             let mut first = 0;
             while left > 1 && pull.length_squared() < LEAST_PULL {
                 self.sprout(node, units[first], blade, step, metric);
@@ -129,10 +195,8 @@ impl Nodes {
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
-            if let Some(nearest) = calls.nearest_caller(node) {
-                let towards = calls.unit_to(nearest, self, metric);
-                self.sprout(node, towards, blade, step, metric);
-            }
+            let towards = calls.unit_to_nearest(node, self, metric);
+            self.sprout(node, towards, blade, step, metric);
         }
     }
 
@@ -162,10 +226,127 @@ impl Nodes {
         if !blade.is_inside(child, step) || blade.blocks_sight(from, child, step) {
             return Sprout::Blocked;
         }
-        self.graph.sprout(node, child);
-        self.near.push(child);
-        self.far.push(child);
+        if self.overlaps(node, child, metric) {
+            return Sprout::Taken;
+        }
+        if let Some(edge) = self.crossed(from, child, [node, node]) {
+            if self.meeting == Meeting::Join {
+                self.join_edge(node, edge, blade, step, metric);
+            }
+            return Sprout::Crossed;
+        }
+        self.add(node, child);
         Sprout::Made
+    }
+
+    /// Makes a child where there is room for it.
+    fn add(&mut self, parent: NodeId, p: DVec2) -> NodeId {
+        let node = self.graph.sprout(parent, p);
+        self.near.push(p);
+        self.far.push(p);
+        if let Some(web) = &mut self.web {
+            web.add((parent, node), self.graph.positions());
+        }
+        node
+    }
+
+    fn join(&mut self, a: NodeId, b: NodeId) {
+        self.graph.join(a, b);
+        if let Some(web) = &mut self.web {
+            web.add((a, b), self.graph.positions());
+        }
+    }
+
+    fn crossed(&self, p: DVec2, q: DVec2, apart: [NodeId; 2]) -> Option<Edge> {
+        self.web.as_ref()?.crossed(p, q, apart, self.graph.positions())
+    }
+
+    /// Whether an edge from a node would lie on one that it has: back along it, or the same way
+    /// again with a step that has become shorter.
+    fn overlaps(&self, node: NodeId, p: DVec2, metric: Metric) -> bool {
+        let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
+        let stretched = |v: DVec2| v * metric.stretch;
+        let web = self.web.as_ref();
+        web.is_some_and(|web| web.overlaps(node, p, least, stretched, self.graph.positions()))
+    }
+
+    /// Whether two nodes are on one vein, or next to each other on two that have met.
+    fn are_close(&self, a: NodeId, b: NodeId, metric: Metric) -> bool {
+        let Some(web) = &self.web else { return false };
+        let limit = metric.length(LEAST_WAY_ROUND * self.kill_mm);
+        let length = |a: NodeId, b: NodeId| {
+            metric.distance_squared(self.position(a), self.position(b)).sqrt()
+        };
+        web.are_beside(a, b) || web.is_way_within(a, b, limit, length)
+    }
+
+    /// Ends a vein at the nearer end of an edge in its way, if that can be reached.
+    fn join_edge(
+        &mut self,
+        node: NodeId,
+        edge: Edge,
+        blade: &GrowingBlade,
+        step: u64,
+        metric: Metric,
+    ) {
+        let from = self.position(node);
+        let distance2 = |end: NodeId| metric.distance_squared(from, self.position(end));
+        let end = if distance2(edge.1) < distance2(edge.0) { edge.1 } else { edge.0 };
+        let to = self.position(end);
+        let is_near = distance2(end) <= metric.length(LONGEST_JOIN * self.step_mm).powi(2);
+        let is_free = is_near
+            && !self.are_close(node, end, metric)
+            && !blade.blocks_sight(from, to, step)
+            && !self.overlaps(node, to, metric)
+            && self.crossed(from, to, [node, end]).is_none();
+        if is_free {
+            self.join(node, end);
+        }
+    }
+
+    /// Brings veins together at the place of the source that called them.
+    ///
+    /// The first gets a child there, which the others join. One that would have to cross a vein or
+    /// leave the blade stays apart, as does one that has met the others close by.
+    pub(super) fn meet(
+        &mut self,
+        place: DVec2,
+        arrivals: &[NodeId],
+        blade: &GrowingBlade,
+        step: u64,
+        metric: Metric,
+    ) {
+        let length = metric.length(self.step_mm);
+        let least2 = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
+        // A vein that has come to the very place needs no child there.
+        let there = arrivals
+            .iter()
+            .copied()
+            .find(|&node| metric.distance_squared(self.position(node), place) < least2);
+        let reach = metric.reach(LEAST_BETWEEN_NODES * length);
+        let taken =
+            || self.near.any_near(place, reach, |_, q| metric.distance_squared(place, q) < least2);
+        if there.is_none() && taken() {
+            return;
+        }
+        let place = there.map_or(place, |node| self.position(node));
+        let mut ends: Vec<NodeId> = there.into_iter().collect();
+        for &node in arrivals.iter().filter(|&&node| Some(node) != there) {
+            let from = self.position(node);
+            let is_free = ends.iter().all(|&end| !self.are_close(node, end, metric))
+                && !blade.blocks_sight(from, place, step)
+                && !self.overlaps(node, place, metric)
+                && self.crossed(from, place, [node, there.unwrap_or(node)]).is_none();
+            if is_free {
+                ends.push(node);
+            }
+        }
+        if let [first, others @ ..] = ends[..].as_ref()
+            && !others.is_empty()
+        {
+            let junction = there.unwrap_or_else(|| self.add(*first, place));
+            others.iter().for_each(|&node| self.join(junction, node));
+        }
     }
 }
 
@@ -177,4 +358,6 @@ enum Sprout {
     Taken,
     /// The margin or a cut is in the way.
     Blocked,
+    /// Another vein is in the way.
+    Crossed,
 }

@@ -12,19 +12,24 @@
 //!
 //! Lengths in the settings are millimetres of the blade at the step in question.
 
+mod callers;
 mod claims;
+mod closed;
 mod extend;
+mod neighbours;
 mod open;
+mod source_index;
 mod sources;
 mod tiles;
+mod web;
 
 use super::graph::VeinGraph;
-use super::{Unreached, VeinError, VeinSpec};
+use super::{Algorithm, Unreached, VeinError, VeinSpec};
 use crate::growth::{GrowingBlade, GrowthType, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
-use extend::Nodes;
-use open::Calls;
+use callers::Callers;
+use extend::{Meeting, Nodes};
 use sources::Supply;
 
 /// What grew.
@@ -53,8 +58,8 @@ fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
     10_000.0 + 16.0 * blade.mature().area_mm2() / step.element_product()
 }
 
-/// Grows open venation from the veins of `start` (in the frame of the mature leaf): bare roots, or
-/// guides, which are there from the first step on.
+/// Grows open or closed venation from the veins of `start` (in the frame of the mature leaf): bare
+/// roots, or guides, which are there from the first step on.
 ///
 /// # Errors
 ///
@@ -66,28 +71,52 @@ pub fn grow(
     rng: &mut Rng,
     observer: &mut dyn Observer,
 ) -> Result<Grown, VeinError> {
-    let mut supply = Supply::new(spec, blade)?;
+    let steps = blade.steps().count() as u64;
+    let is_closed = spec.algorithm == Algorithm::AuxinClosed;
+    let closing_steps =
+        if is_closed { (spec.closing_share * steps as f64).round() as u64 } else { steps };
+    let mut supply = Supply::new(spec, blade, closing_steps)?;
     let first = *blade.steps().start();
-    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first));
+    let meeting = if is_closed { Meeting::Join } else { Meeting::Stop };
+    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first), meeting);
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
-    let mut calls = Calls::new(spec, blade);
-    let steps = blade.steps().count() as u64;
+    let mut open = open::Calls::new(spec, blade);
+    let mut closed = is_closed.then(|| closed::Calls::new(spec, blade));
+    // Full size: nothing changes any more once a step has changed nothing.
+    let full_size = blade.spec().r#type == GrowthType::None;
+    let mut stands_still = false;
     let pace = (steps / 100).max(1);
     let mut made = 0;
     let mut nodes_after_step = Vec::new();
     for step in blade.steps() {
         let metric = blade.metric(step);
         nodes.refine(metric);
+        let is_closing = made < closing_steps;
+        if is_closing && stands_still {
+            // Nothing happens before the last veins, which end free.
+            made += 1;
+            nodes_after_step.push(nodes.len() as u32);
+            continue;
+        }
+        if let Some(sources) = closed.take_if(|_| !is_closing) {
+            open = end_free(sources, spec, blade, step, &mut nodes, &mut supply);
+            supply.crowd(spec.veinlet_scale, steps - closing_steps);
+        }
+        let is_last = closed.is_none() || closing_steps == steps;
+        let calls: &mut dyn Callers = match &mut closed {
+            Some(closed) => closed,
+            None => &mut open,
+        };
         // Seed new sources where the blade has room.
-        supply.seed(step, metric, rng, &mut calls, &nodes)?;
-        // Let each source call the node it is nearest to.
+        supply.seed(step, metric, rng, calls, &nodes)?;
+        // Let each source call the nodes it is to call.
         let called = calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
         for node in called {
-            nodes.extend(node, &calls, blade, step, metric);
+            nodes.extend(node, calls, blade, step, metric);
         }
         if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
             let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
@@ -95,8 +124,8 @@ pub fn grow(
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));
         }
         // Let the new nodes take sources over, and remove those that have been reached.
-        let dead = calls.take_over(before, &nodes, metric);
-        let stands_still = dead.is_empty() && nodes.len() == before;
+        let dead = calls.take_over(before, blade, step, metric, &mut nodes);
+        stands_still = full_size && dead.is_empty() && nodes.len() == before && !calls.is_waiting();
         supply.forget(&dead);
         made += 1;
         nodes_after_step.push(nodes.len() as u32);
@@ -111,14 +140,44 @@ pub fn grow(
         }
         // Stop when nothing can change any more: under growth lengths shrink and room appears, so
         // only a blade of full size settles while there are sources left.
-        let full_size = blade.spec().r#type == GrowthType::None;
-        if supply.is_exhausted() && (calls.living() == 0 || (full_size && stands_still)) {
+        if supply.is_exhausted() && (calls.living() == 0 || stands_still) && is_last {
             break;
         }
     }
+    if let Some(closed) = &mut closed {
+        // Veins that have come to a source meet, though others are still on their way.
+        let last = blade.last_step();
+        closed.settle(blade, last, blade.metric(last), &mut nodes);
+        if let Some(count) = nodes_after_step.last_mut() {
+            *count = nodes.len() as u32;
+        }
+    }
+    let calls: &dyn Callers = match &closed {
+        Some(closed) => closed,
+        None => &open,
+    };
     let mut unreached = calls.unreached(blade, &nodes);
     unreached.outside += supply.outside();
     unreached.too_young += supply.unborn();
     let sources = calls.len() + unreached.outside + supply.unborn();
     Ok(Grown { graph: nodes.into_graph(), unreached, sources, nodes_after_step })
+}
+
+/// Turns closed venation into open: what has come to a source meets, and the sources that are left
+/// call their nearest node only.
+fn end_free(
+    mut sources: closed::Calls,
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    step: u64,
+    nodes: &mut Nodes,
+    supply: &mut Supply<'_>,
+) -> open::Calls {
+    let metric = blade.metric(step);
+    supply.forget(&sources.settle(blade, step, metric, nodes));
+    nodes.end_free();
+    let mut spec = spec.clone();
+    let least = spec.node_step_mm / 2.0;
+    spec.kill_distance_mm = (spec.kill_distance_mm * spec.veinlet_scale).max(least);
+    sources.opened(&spec, blade, metric, nodes)
 }

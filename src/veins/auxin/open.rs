@@ -118,6 +118,16 @@ impl Calls {
         self.living += 1;
     }
 
+    /// Adds a source that is used up already, so that those after it keep their numbers.
+    pub(super) fn add_spent(&mut self, p: DVec2) {
+        let id = self.positions.len() as u32;
+        self.claims.add(None, 0.0);
+        self.claims.kill(id);
+        self.claims.take_dead();
+        self.positions.push(p);
+        self.next.push(NONE);
+    }
+
     /// Builds the index anew once enough sources were born or died since.
     pub(super) fn keep_index(&mut self) {
         let outside = self.positions.len() - self.unindexed;
@@ -327,7 +337,7 @@ impl Calls {
 }
 
 /// Merges an ascending list into another, from the back and in place.
-fn merge(into: &mut Vec<u32>, other: &[u32]) {
+pub(super) fn merge(into: &mut Vec<u32>, other: &[u32]) {
     let (mut a, mut b) = (into.len(), other.len());
     into.resize(a + b, 0);
     for at in (0..a + b).rev() {

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::callers::Callers;
 use super::extend::Nodes;
-use super::open::Calls;
 use crate::geometry::point_grid::PointGrid;
 use crate::geometry::scatter::PolygonScatter;
 use crate::growth::{GrowingBlade, Metric};
@@ -33,12 +33,19 @@ pub(super) struct Supply<'a> {
     /// birth, latest first.
     waiting: Vec<(u64, DVec2)>,
     given: bool,
-    started: bool,
+    /// Darts that fall on the mature blade at once, where tissue stands still.
+    volley: u64,
+    is_sorted: bool,
     outside: usize,
 }
 
 impl<'a> Supply<'a> {
-    pub(super) fn new(spec: &VeinSpec, blade: &'a GrowingBlade) -> Result<Self, VeinError> {
+    /// Where tissue stands still, the darts of the first `volley_steps` steps fall at once.
+    pub(super) fn new(
+        spec: &VeinSpec,
+        blade: &'a GrowingBlade,
+        volley_steps: u64,
+    ) -> Result<Self, VeinError> {
         let steps = blade.steps().count() as f64;
         let given = !spec.sources_mm.is_empty();
         if !given && spec.spawn_rate * steps > MAX_DARTS {
@@ -59,7 +66,8 @@ impl<'a> Supply<'a> {
             fraction: 0.0,
             waiting: Vec::new(),
             given,
-            started: false,
+            volley: (spec.spawn_rate * volley_steps as f64) as u64,
+            is_sorted: false,
             outside: 0,
         };
         for (i, place) in spec.sources_mm.iter().enumerate() {
@@ -89,23 +97,22 @@ impl<'a> Supply<'a> {
         step: u64,
         metric: Metric,
         rng: &mut Rng,
-        calls: &mut Calls,
+        calls: &mut dyn Callers,
         nodes: &Nodes,
     ) -> Result<(), VeinError> {
         let darts_fall = !self.given && self.blade.carries_tissue();
-        if !self.started {
-            self.started = true;
-            if !self.given && !darts_fall {
-                // All darts fall on the mature blade before the first step.
-                let steps = self.blade.steps().count() as f64;
-                for _ in 0..(self.rate * steps) as u64 {
-                    if let Some(p) = self.throw(metric, rng, nodes) {
-                        self.spaced.push(p);
-                        self.wait_for(p);
-                    }
-                    self.check_number()?;
+        if !self.given && !self.blade.carries_tissue() {
+            // All darts fall on the mature blade before the step.
+            for _ in 0..std::mem::take(&mut self.volley) {
+                if let Some(p) = self.throw(metric, rng, nodes) {
+                    self.spaced.push(p);
+                    self.wait_for(p);
                 }
+                self.check_number()?;
             }
+        }
+        if !self.is_sorted {
+            self.is_sorted = true;
             // Stable: those of one step keep their order. Latest first, so that they can be popped.
             self.waiting.reverse();
             self.waiting.sort_by_key(|&(birth, _)| std::cmp::Reverse(birth));
@@ -153,6 +160,16 @@ impl<'a> Supply<'a> {
             });
         let free = !crowded && !nodes.any_within(p, metric.length(self.vein_spacing_mm), metric);
         free.then_some(p)
+    }
+
+    /// From now on sources need only a share of their room; where tissue stands still, the darts of
+    /// this many steps fall anew.
+    pub(super) fn crowd(&mut self, share: f64, volley_steps: u64) {
+        self.spacing_mm *= share;
+        self.vein_spacing_mm *= share;
+        self.volley = (self.rate * volley_steps as f64) as u64;
+        self.waiting.reverse();
+        self.is_sorted = false;
     }
 
     /// Makes room where sources died.

@@ -18,7 +18,9 @@
 
 mod course;
 mod curve;
+mod ends;
 mod ground;
+mod matching;
 mod planter;
 mod primary;
 mod rim;
@@ -152,7 +154,7 @@ const SECONDARY: Rank = Rank { order: 2, kind: VeinKind::Secondary };
 const INTERSECONDARY: Rank = Rank { order: 2, kind: VeinKind::Intersecondary };
 const EXTERIOR: Rank = Rank { order: 3, kind: VeinKind::Exterior };
 
-/// Guides end this far inside the margin, in steps; at most [`INSET`] of the length.
+/// Guides end this far inside the margin, in steps; at most [`INSET`] lengths.
 const INSET_STEPS: f64 = 0.35;
 
 /// In lengths of the blade: less than a texel of a large picture.

@@ -3,16 +3,15 @@
 use glam::DVec2;
 
 use super::course::{Course, decurrent};
-use super::curve::{self, turned};
+use super::curve;
+use super::ends::{arch_to, branch_to, festoon, fork};
+use super::matching::teeth_for;
 use super::planter::{Planter, Vein};
 use super::primary::{Lateral, Primaries};
 use super::rim::Rim;
 use super::targets::{self, Tip};
-use super::{EXTERIOR, GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
+use super::{GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
 use crate::seed::Rng;
-
-/// An arch meets the next secondary at this share of that one.
-const ARCH_AT: f64 = 0.8;
 
 /// A secondary of full irregularity leaves at up to so many degrees more or less.
 const ANGLE_SPREAD: f64 = 16.0;
@@ -26,20 +25,20 @@ const LEAST: f64 = 0.45;
 
 /// What one secondary is to be.
 #[derive(Debug, Clone, Copy)]
-struct Plan {
+pub(super) struct Plan {
     /// Where it leaves, as a share of its parent vein.
-    share: f64,
-    side: f64,
+    pub(super) share: f64,
+    pub(super) side: f64,
     angle_deg: f64,
     curvature: f64,
     /// To the next on its side (mm).
-    spacing: f64,
+    pub(super) spacing: f64,
     /// −1 – 1, for what else varies.
-    sway: f64,
+    pub(super) sway: f64,
 }
 
 impl Plan {
-    fn course(&self, parent: &Vein, share: f64) -> Course {
+    pub(super) fn course(&self, parent: &Vein, share: f64) -> Course {
         let (_, from, ahead) = parent.at(share);
         Course {
             from,
@@ -52,9 +51,9 @@ impl Plan {
 }
 
 /// A secondary that was laid.
-struct Laid {
-    vein: Vein,
-    arch: Option<Vein>,
+pub(super) struct Laid {
+    pub(super) vein: Vein,
+    pub(super) arch: Option<Vein>,
 }
 
 /// Lays the secondaries of all primaries, and the vein along the margin.
@@ -158,7 +157,7 @@ impl Row<'_> {
         }
         let tips = [0, 1].map(|s| {
             let side: Vec<Plan> = plans.iter().map(|pair| pair[s]).collect();
-            self.teeth_for(planter, midrib, &side)
+            teeth_for(spec, planter, midrib, &side, &self.free_teeth())
         });
         // From the apex down, so that arches find the one above.
         let mut above: [Option<Laid>; 2] = [None, None];
@@ -207,7 +206,7 @@ impl Row<'_> {
                 }
             };
             let plans: Vec<Plan> = self.places(count, range).into_iter().map(&mut plan).collect();
-            let tips = self.teeth_for(planter, &lateral.vein, &plans);
+            let tips = teeth_for(spec, planter, &lateral.vein, &plans, &self.free_teeth());
             let mut above = None;
             for (plan, tip) in plans.iter().zip(tips).rev() {
                 let laid = self.secondary(planter, &lateral.vein, plan, above.as_ref(), tip);
@@ -324,64 +323,9 @@ impl Row<'_> {
         planter.lay(parent.at(share).0, line, SECONDARY, least)
     }
 
-    /// The tooth that each of a row of secondaries, from base to apex, should end in: those that
-    /// bring most of them into teeth with the least bending, in the order of the row.
-    fn teeth_for(&self, planter: &Planter<'_>, parent: &Vein, plans: &[Plan]) -> Vec<Option<Tip>> {
-        let none = vec![None; plans.len()];
-        let Some(side) = plans.first().map(|plan| plan.side) else { return none };
-        let free = |tip: &&Tip| tip.side == side && !self.taken.contains(&tip.at);
-        let mut tips: Vec<Tip> = self.teeth.iter().filter(free).copied().collect();
-        if tips.is_empty() {
-            return none;
-        }
-        let ends: Vec<(DVec2, f64)> = plans
-            .iter()
-            .map(|plan| {
-                let line =
-                    plan.course(parent, plan.share.clamp(0.01, 0.99)).to_margin(planter.ground);
-                (line[line.len() - 1], self.spec.tooth_reach * plan.spacing)
-            })
-            .collect();
-        // The inner side of a lobe runs down the margin while its vein runs up.
-        let (first, last) = (ends[0].0, ends[ends.len() - 1].0);
-        let along = |p: DVec2| {
-            let near = |a: &&Tip, b: &&Tip| a.at.distance(p).total_cmp(&b.at.distance(p));
-            tips.iter().min_by(near).map_or(0.0, |tip| tip.along)
-        };
-        if along(last) < along(first) {
-            tips.reverse();
-        }
-        let tallest = tips.iter().map(|tip| tip.height).fold(0.0, f64::max);
-        let gain = |i: usize, j: usize| {
-            let (end, reach) = ends[i];
-            let bend = tips[j].at.distance(end) / reach;
-            if bend <= 1.0 {
-                1.2 - bend + 0.6 * tips[j].height / tallest
-            } else {
-                f64::NEG_INFINITY
-            }
-        };
-        // best[i][j]: the most that the first i secondaries get from the first j teeth.
-        let mut best = vec![vec![0.0; tips.len() + 1]; plans.len() + 1];
-        for i in 1..=plans.len() {
-            for j in 1..=tips.len() {
-                let matched = best[i - 1][j - 1] + gain(i - 1, j - 1);
-                best[i][j] = matched.max(best[i - 1][j]).max(best[i][j - 1]);
-            }
-        }
-        let mut matched = none;
-        let (mut i, mut j) = (plans.len(), tips.len());
-        while i > 0 && j > 0 {
-            if best[i][j] == best[i - 1][j] {
-                i -= 1;
-            } else if best[i][j] == best[i][j - 1] {
-                j -= 1;
-            } else {
-                (i, j) = (i - 1, j - 1);
-                matched[i] = Some(tips[j]);
-            }
-        }
-        matched
+    /// The teeth that have no vein yet.
+    fn free_teeth(&self) -> Vec<Tip> {
+        self.teeth.iter().filter(|tip| !self.taken.contains(&tip.at)).copied().collect()
     }
 
     /// Whether a secondary has no tooth, and those before and after it have neighbouring ones: in a
@@ -431,78 +375,4 @@ impl Row<'_> {
 /// Four numbers from −1 to 1.
 fn draws(rng: &mut Rng) -> [f64; 4] {
     std::array::from_fn(|_| rng.between(-1.0, 1.0))
-}
-
-/// An arch from the end of a secondary to the one above, with which it closes a loop.
-fn arch_to(planter: &mut Planter<'_>, vein: &Vein, above: &Laid, plan: &Plan) -> Option<Vein> {
-    let (node, from, heading) = vein.end();
-    let (_, to, outward) = above.vein.at(ARCH_AT + 0.06 * plan.sway);
-    let chord = from.distance(to);
-    if chord > 3.5 * plan.spacing {
-        return None;
-    }
-    let bulge = (from - to).normalize_or_zero();
-    let arrive = (bulge * 0.55 + outward * 0.85).normalize_or(bulge);
-    for reach in [0.5, 0.3, 0.1] {
-        let bow = [from, from + heading * (reach * chord), to + arrive * (reach * chord), to];
-        if let Some(arch) = planter.lay(node, &curve::cubic(bow, 40), SECONDARY, 0.6) {
-            planter.join_hit(&arch);
-            return Some(arch);
-        }
-    }
-    None
-}
-
-/// A branch from the end of a secondary straight on to the margin.
-fn branch_to(planter: &mut Planter<'_>, vein: &Vein, tip: DVec2) {
-    let (node, from, heading) = vein.end();
-    let chord = from.distance(tip);
-    let bow = [from, from + heading * (0.35 * chord), from.lerp(tip, 0.7), tip];
-    planter.lay(node, &curve::cubic(bow, 24), EXTERIOR, 0.5);
-}
-
-/// An arch outside the arches of two neighbours.
-fn festoon(planter: &mut Planter<'_>, arch: &Vein, upper: &Vein, plan: &Plan) {
-    let (node, from, ahead) = arch.at(0.3);
-    let (_, to, above) = upper.at(0.25);
-    let chord = from.distance(to);
-    let out = [ahead, above].map(|v| turned(v, 62.0, plan.side));
-    for reach in [0.5, 0.3] {
-        let bow = [from, from + out[0] * (reach * chord), to + out[1] * (0.6 * reach * chord), to];
-        if let Some(vein) = planter.lay(node, &curve::cubic(bow, 32), EXTERIOR, 0.5) {
-            planter.join_hit(&vein);
-            return;
-        }
-    }
-}
-
-/// Branches of branches towards the margin, `generations` times.
-fn fork(
-    planter: &mut Planter<'_>,
-    vein: &Vein,
-    plan: &Plan,
-    generations: usize,
-    angle_deg: f64,
-    reach: f64,
-) {
-    let mut tips = vec![vein.end()];
-    for generation in 0..generations {
-        let mut next = Vec::new();
-        for (node, from, heading) in tips {
-            for side in [plan.side, -plan.side] {
-                let sway = 1.0 + 0.3 * plan.sway * side;
-                let towards = turned(heading, 0.5 * angle_deg * sway, side);
-                let room = planter.ground.cast(from, towards);
-                let left = (generations - generation) as f64;
-                let long = (reach * room / left * 1.2).min(reach * room);
-                let bend = from + heading * (0.3 * long);
-                let to = from + towards * long;
-                let bow = [from, bend, from.lerp(to, 0.75), to];
-                if let Some(branch) = planter.lay(node, &curve::cubic(bow, 20), EXTERIOR, 0.4) {
-                    next.push(branch.end());
-                }
-            }
-        }
-        tips = next;
-    }
 }

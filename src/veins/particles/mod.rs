@@ -8,7 +8,7 @@
 //! Source: Rodkaew, Siripant, Lursinsap and Chongstitvatana, "An algorithm for generating vein images
 //! for realistic modeling of a leaf", 2002, algorithms 1 and 2. Departs from it: the paper ignores
 //! the margin and fails where the petiole is hidden; here q̂ follows the shortest path inside the
-//! blade ([`steer`]) and particles that cannot see each other neither attract nor merge, unless
+//! blade (`steer`) and particles that cannot see each other neither attract nor merge, unless
 //! `steering` is `plain`. p̂ + q̂ is made a unit vector (a step has one length) and is q̂ where it
 //! vanishes. The width is Murray's law on the energy. Growth plays no part: particles flow in the
 //! finished blade.

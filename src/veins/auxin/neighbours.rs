@@ -1,0 +1,182 @@
+//! The relative neighbours of a source among the nodes.
+//!
+//! A node is one unless another stands in its way: one that is nearer to the source than it is, and
+//! nearer to it than the source is. Of two nodes within 60 degrees of each other, seen from the
+//! source, the nearer stands in the way of the farther, so at most the nearest node of each sixth of
+//! the circle is a relative neighbour. Those six are kept, each with a mark whether it is one. A new
+//! node changes them in constant time, and the nodes themselves need to be searched only when one of
+//! the other sixths holds a nearer node that is not itself in the way.
+//!
+//! Source: G. Toussaint, "The relative neighbourhood graph of a finite planar set", Pattern
+//! Recognition 12, 1980; the six cones are A. Yao's (SIAM J. Comput. 11, 1982). Between nodes at one
+//! distance the one with the lower id counts as nearer.
+
+use glam::DVec2;
+
+use super::claims::NONE;
+use super::extend::Nodes;
+use crate::growth::Metric;
+use crate::veins::graph::NodeId;
+
+/// Sixths of the circle.
+pub(super) const SECTORS: usize = 6;
+
+/// The nearest node in each sixth of the circle around a source.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Around {
+    /// Squared distances; infinite where there is none.
+    near2: [f64; SECTORS],
+    nodes: [NodeId; SECTORS],
+    /// Which of them are relative neighbours, a bit for each.
+    neighbours: u8,
+    /// Which of them are known to see the source.
+    clear: u8,
+    /// Which of them never will.
+    hidden: u8,
+}
+
+impl Around {
+    /// Of no nodes.
+    pub(super) const EMPTY: Self = Self {
+        near2: [f64::INFINITY; SECTORS],
+        nodes: [NONE; SECTORS],
+        neighbours: 0,
+        clear: 0,
+        hidden: 0,
+    };
+
+    /// The relative neighbours, each with its sixth and its squared distance.
+    pub(super) fn neighbours(&self) -> impl Iterator<Item = (usize, NodeId, f64)> + '_ {
+        (0..SECTORS).filter(|&k| self.is_neighbour(k)).map(|k| (k, self.nodes[k], self.near2[k]))
+    }
+
+    fn is_neighbour(&self, k: usize) -> bool {
+        self.neighbours & (1 << k) > 0
+    }
+
+    /// The nearest node of all; it is a relative neighbour.
+    pub(super) fn nearest(&self) -> Option<(f64, NodeId)> {
+        (0..SECTORS)
+            .map(|k| (self.near2[k], self.nodes[k]))
+            .filter(|&(_, node)| node != NONE)
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+    }
+
+    /// The squared distance of the nearest node; infinite without one.
+    pub(super) fn least2(&self) -> f64 {
+        self.near2.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// No node as far as this (squared) changes anything.
+    pub(super) fn most2(&self) -> f64 {
+        self.near2.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Whether nothing farther than a distance can be a relative neighbour of a source at `s` among
+    /// nodes within `low` and `high` (stretched coordinates, relative to the source).
+    pub(super) fn is_settled(&self, distance: f64, low: DVec2, high: DVec2) -> bool {
+        (0..SECTORS).all(|k| {
+            if self.near2[k] <= distance * distance {
+                return true;
+            }
+            // How far the box reaches into the sixth: no point of that lies farther than its
+            // projection on the middle of the sixth over cos 30°.
+            let middle = MIDDLES[k];
+            let reach = (middle.x * if middle.x > 0.0 { high.x } else { low.x })
+                + (middle.y * if middle.y > 0.0 { high.y } else { low.y });
+            reach * 1.1548 < distance
+        })
+    }
+
+    /// Takes note of a node at `p`, as far from the source at `s` as `distance2` (squared).
+    ///
+    /// `nodes` may already hold others that are still to be offered: the order does not matter.
+    pub(super) fn offer(
+        &mut self,
+        s: DVec2,
+        node: NodeId,
+        p: DVec2,
+        distance2: f64,
+        nodes: &Nodes,
+        metric: Metric,
+    ) {
+        let here = sector((p - s) * metric.stretch);
+        // What stands in the way is within 90 degrees: never in the opposite sixth.
+        let others = [1, 2, 4, 5].map(|turn| (here + turn) % SECTORS);
+        let mut in_doubt = false;
+        let mut shielded = false;
+        for k in others {
+            let (other2, other) = (self.near2[k], self.nodes[k]);
+            if other == NONE {
+                continue;
+            }
+            let other_is_nearer = (other2, other) < (distance2, node);
+            if !other_is_nearer && !self.is_neighbour(k) {
+                continue;
+            }
+            let between2 = metric.distance_squared(p, nodes.position(other));
+            if other_is_nearer {
+                shielded |= between2 < distance2;
+                in_doubt = true;
+            } else if between2 < other2 {
+                self.neighbours &= !(1 << k);
+            }
+        }
+        if (self.near2[here], self.nodes[here]) <= (distance2, node) {
+            return;
+        }
+        let bit = 1 << here;
+        (self.near2[here], self.nodes[here]) = (distance2, node);
+        self.clear &= !bit;
+        self.hidden &= !bit;
+        if shielded || (in_doubt && nodes.stands_between(s, node, distance2, metric)) {
+            self.neighbours &= !bit;
+        } else {
+            self.neighbours |= bit;
+        }
+    }
+
+    /// What is known of the sight between the source and the node of a sixth.
+    pub(super) fn sight(&self, k: usize) -> Option<bool> {
+        let bit = 1 << k;
+        if self.clear & bit > 0 {
+            Some(true)
+        } else if self.hidden & bit > 0 {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    pub(super) fn set_sight(&mut self, k: usize, clear: bool) {
+        let marks = if clear { &mut self.clear } else { &mut self.hidden };
+        *marks |= 1 << k;
+    }
+}
+
+/// Directions of the middles of the sixths.
+const MIDDLES: [DVec2; SECTORS] = {
+    const C: f64 = 0.866_025_403_784_438_6;
+    [
+        DVec2::new(C, 0.5),
+        DVec2::new(0.0, 1.0),
+        DVec2::new(-C, 0.5),
+        DVec2::new(-C, -0.5),
+        DVec2::new(0.0, -1.0),
+        DVec2::new(C, -0.5),
+    ]
+};
+
+/// The sixth of the circle that a vector points into.
+fn sector(v: DVec2) -> usize {
+    const TAN_60: f64 = 1.732_050_807_568_877_2;
+    let steep = v.y.abs() > TAN_60 * v.x.abs();
+    match (v.y >= 0.0, steep, v.x > 0.0) {
+        (true, true, _) => 1,
+        (true, false, true) => 0,
+        (true, false, false) => 2,
+        (false, true, _) => 4,
+        (false, false, true) => 5,
+        (false, false, false) => 3,
+    }
+}

@@ -1,0 +1,143 @@
+//! The edges between the nodes, so far as growth needs to know them: what a step would cross, and
+//! how far it is from node to node along the veins.
+
+use glam::DVec2;
+
+use super::claims::NONE;
+use crate::geometry::Rect;
+use crate::geometry::polygon::{cross, segments_touch};
+use crate::geometry::segment_grid::SegmentGrid;
+use crate::veins::graph::NodeId;
+
+/// An edge, the nodes at its ends in the order in which it was made.
+pub(super) type Edge = (NodeId, NodeId);
+
+/// Edges by place and by node.
+#[derive(Debug)]
+pub(super) struct Web {
+    grid: SegmentGrid,
+    edges: Vec<Edge>,
+    /// The first link of each node.
+    firsts: Vec<u32>,
+    /// Lists of the nodes beside each: a node and the next link.
+    links: Vec<(NodeId, u32)>,
+}
+
+impl Web {
+    /// No edges yet, in cells of about `cell`.
+    pub(super) fn new(bounds: Rect, cell: f64) -> Self {
+        let grid = SegmentGrid::new(bounds, cell);
+        Self { grid, edges: Vec::new(), firsts: Vec::new(), links: Vec::new() }
+    }
+
+    pub(super) fn add(&mut self, edge: Edge, positions: &[DVec2]) {
+        let (a, b) = edge;
+        self.grid.push(positions[a as usize], positions[b as usize]);
+        self.edges.push(edge);
+        self.firsts.resize(positions.len(), NONE);
+        for (here, there) in [(a, b), (b, a)] {
+            self.links.push((there, self.firsts[here as usize]));
+            self.firsts[here as usize] = self.links.len() as u32 - 1;
+        }
+    }
+
+    pub(super) fn refine(&mut self, cell: f64, positions: &[DVec2]) {
+        let Self { grid, edges, .. } = self;
+        grid.refine(cell, |id| {
+            let (a, b) = edges[id as usize];
+            (positions[a as usize], positions[b as usize])
+        });
+    }
+
+    /// The edge that a line first crosses or touches on its way from `p` to `q`, those at the nodes
+    /// `apart` excepted.
+    pub(super) fn crossed(
+        &self,
+        p: DVec2,
+        q: DVec2,
+        apart: [NodeId; 2],
+        positions: &[DVec2],
+    ) -> Option<Edge> {
+        let mut first = (f64::INFINITY, NONE);
+        self.grid.for_each_near(p, q, |id| {
+            let (a, b) = self.edges[id as usize];
+            if apart.contains(&a) || apart.contains(&b) {
+                return;
+            }
+            let (a, b) = (positions[a as usize], positions[b as usize]);
+            if segments_touch(p, q, a, b) {
+                let way = way_to(p, q, a, b);
+                if way < first.0 || (way == first.0 && id < first.1) {
+                    first = (way, id);
+                }
+            }
+        });
+        (first.1 != NONE).then(|| self.edges[first.1 as usize])
+    }
+
+    fn beside(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        let link = |at: u32| (at != NONE).then(|| self.links[at as usize]);
+        let first = self.firsts.get(node as usize).copied().unwrap_or(NONE);
+        std::iter::successors(link(first), move |&(_, next)| link(next)).map(|(node, _)| node)
+    }
+
+    /// Whether an edge from `node` to `p` would lie on one that the node already has: nearer to it than
+    /// `least`, in a frame that `stretched` tells.
+    pub(super) fn overlaps(
+        &self,
+        node: NodeId,
+        p: DVec2,
+        least: f64,
+        stretched: impl Fn(DVec2) -> DVec2,
+        positions: &[DVec2],
+    ) -> bool {
+        let from = positions[node as usize];
+        let new = stretched(p - from);
+        self.beside(node).any(|other| {
+            let old = stretched(positions[other as usize] - from);
+            let longer2 = new.length_squared().max(old.length_squared());
+            let apart = new.perp_dot(old);
+            new.dot(old) > 0.0 && apart * apart < least * least * longer2
+        })
+    }
+
+    pub(super) fn are_beside(&self, a: NodeId, b: NodeId) -> bool {
+        self.beside(a).any(|node| node == b)
+    }
+
+    /// Whether one comes from `a` to `b` along edges over no more than `limit`.
+    pub(super) fn is_way_within(
+        &self,
+        a: NodeId,
+        b: NodeId,
+        limit: f64,
+        length: impl Fn(NodeId, NodeId) -> f64,
+    ) -> bool {
+        // A few edges at most: a list is as good as a queue. A node is looked at again when a
+        // shorter way to it turns up.
+        let mut known = vec![(a, 0.0)];
+        let mut next = 0;
+        while next < known.len() {
+            let (node, way) = known[next];
+            next += 1;
+            if node == b {
+                return true;
+            }
+            for other in self.beside(node) {
+                let way = way + length(node, other);
+                let is_shorter =
+                    known.iter().all(|&(node, known_way)| node != other || way < known_way);
+                if way <= limit && is_shorter {
+                    known.push((other, way));
+                }
+            }
+        }
+        false
+    }
+}
+
+/// Which share of the way from `p` to `q` lies before the line through `a` and `b`.
+fn way_to(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let (before, after) = (cross(a, b, p), cross(a, b, q));
+    if before == after { 0.0 } else { before / (before - after) }
+}

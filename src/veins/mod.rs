@@ -415,3 +415,6 @@ impl VeinError {
         Self::Setting { key: key.into(), value, problem: problem.into() }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -87,7 +87,7 @@ parameters! {
         /// How evenly a vein tapers between its branches: 0 in a step at each, 1 all the way.
         taper: number(0.0, 0.0..=1.0, ""),
         /// Where widths come from: `murray` counts tips, `flow` lets veins adapt to what flows through
-        /// them, loops included (1 to 2 s for each 10 000 junctions).
+        /// them, loops included, and takes seconds for each 10 000 junctions.
         widths: choice(Widths, Widths::Murray),
         /// Share of the demand for water that comes and goes, for `widths = "flow"`; loops live on it.
         fluctuation: number(0.5, 0.0..=1.0, ""),

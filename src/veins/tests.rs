@@ -78,37 +78,3 @@ fn widths_of_a_whole_leaf_hold_what_they_promise() {
         assert!(least >= 0.03, "{settings:?}: {least}");
     }
 }
-
-#[test]
-#[ignore = "a measurement, not a test"]
-fn flow_in_a_whole_closed_leaf() {
-    let mut document = presets::find("beech").expect("a preset").document().expect("it parses");
-    document.set("veins.algorithm=auxin-closed", "a test").expect("a setting");
-    let spec = document.resolve(Seed(7)).expect("it resolves").veins;
-    let leaf = {
-        let spec = document.resolve(Seed(7)).expect("it resolves");
-        pipeline::grow(&spec, Seed(7), &mut Silent).expect("a leaf")
-    };
-    let graph = leaf.venation.graph();
-    for words in [Widths::Murray, Widths::Flow] {
-        let spec = VeinSpec { widths: words, ..spec.clone() };
-        let (start, mut steps) = (std::time::Instant::now(), 0);
-        let count = &mut |_: crate::observer::Progress| steps += 1;
-        let (radii, _) = widths::radii_and_orders(&spec, graph, 0.03, count).expect("radii");
-        let time = start.elapsed();
-        let mut sorted = radii.clone();
-        sorted.sort_by(f64::total_cmp);
-        let floor = radii.iter().filter(|&&r| r <= 0.03).count();
-        let stops = chains::Chains::of(graph).at.iter().filter(|at| !at.is_empty()).count();
-        println!(
-            "{words}: {} nodes, {stops} stops, {time:?}, {steps} steps, median {}, max {:?}, floor {floor}",
-            radii.len(),
-            sorted[sorted.len() / 2],
-            sorted.last()
-        );
-    }
-    let start = std::time::Instant::now();
-    let spec = VeinSpec { relaxation: 5, ..spec };
-    let _ = relax::relaxed(&spec, &leaf.margin, graph.clone());
-    println!("relaxation of 5 sweeps: {:?}", start.elapsed());
-}

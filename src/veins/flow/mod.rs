@@ -29,9 +29,10 @@ const BACKGROUND: f64 = 0.01;
 const BACKGROUND_TIME: f64 = 3.0;
 
 /// One step lasts a unit of time; the relaxation within it is exact, so it is stable.
-const MOST_STEPS: u64 = 200;
+const MOST_STEPS: u64 = 100;
 
-/// Conductances that change by less than this share in a step have settled.
+/// Conductances that change by less than this share in a step have settled; those of veins that feed
+/// less than one sink may go on.
 const SETTLED: f64 = 1e-4;
 
 /// Sinks open in so many patches of the blade, and again in so many scattered groups. A square.
@@ -137,12 +138,18 @@ impl FlowNetwork {
         }
         sides.retain(|side| side.iter().any(|&demand| demand > 0.0));
         let shares: Vec<f64> = sides.iter().map(|side| side.iter().sum()).collect();
-        // Below this a vein is much finer than the finest that feeds one sink.
-        let least = 1e-3 * libm::pow(one, 2.0 * BETA);
+        // What a vein that feeds one sink has; far below that, nothing is seen any more.
+        let finest = libm::pow(one, 2.0 * BETA);
+        let least = 1e-3 * finest;
         let kept = libm::exp(-1.0);
         for step in 0..MOST_STEPS {
-            let progress =
-                Progress { stage: "widths", step, steps: 0, nodes: graph.len(), sources: 0 };
+            let progress = Progress {
+                stage: "widths",
+                step,
+                steps: MOST_STEPS,
+                nodes: graph.len(),
+                sources: 0,
+            };
             observer.report(progress);
             let Some(flows) = self.flows(&pattern, &conductances, &sides) else {
                 return conductances;
@@ -160,7 +167,7 @@ impl FlowNetwork {
                 let square = (1.0 - fluctuation) * mean * mean + fluctuation * moving;
                 let aim = libm::pow(square, BETA) + background;
                 let next = (aim + (*conductance - aim) * kept).max(least);
-                change = change.max((next - *conductance).abs() / *conductance);
+                change = change.max((next - *conductance).abs() / conductance.max(finest));
                 *conductance = next;
             }
             if change < SETTLED && background < least {

@@ -83,3 +83,18 @@ fn roots_alone_and_several_roots_have_radii() {
     graph.sprout(other, DVec2::new(1.0, 1.0));
     assert_eq!(adapted(&graph, 0.5)[1..], [1.0, 1.0]);
 }
+
+#[test]
+fn too_many_junctions_are_refused() {
+    let mut graph = VeinGraph::new();
+    let root = graph.add_root(DVec2::ZERO);
+    for i in 0..=MOST_STOPS {
+        graph.sprout(root, DVec2::new(i as f64, 1.0));
+    }
+    let refused = radii(&graph, &vec![1.0; graph.len()], 1e-3, 0.5, &mut Silent);
+    assert_eq!(
+        refused.expect_err("too many").to_string(),
+        "veins.widths = \"flow\" takes at most 200000 junctions and ends, here are 200001: grow \
+         fewer veins (veins.source_spawn_distance_mm) or take \"murray\""
+    );
+}

@@ -12,9 +12,9 @@ use crate::veins::VeinSpec;
 parameters! {
     /// What is written of a leaf.
     pub struct OutputSpec {
-        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or none.
+        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or all, or none.
         maps: text("basecolor,opacity,height,normal"),
-        /// Other files to write: some of obj, svg, json, graphml, csv; or none.
+        /// Other files to write: some of obj, svg, json, graphml, csv; or all, or none.
         formats: text("obj"),
     }
 }

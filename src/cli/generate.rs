@@ -38,11 +38,11 @@ pub(crate) struct Args {
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
-    /// Maps to write: basecolor, opacity, height, normal, bump; or none [default: the file's, else
+    /// Maps to write: basecolor, opacity, height, normal, bump; all or none [default: the file's, else
     /// basecolor,opacity,height,normal].
     #[arg(long, value_name = "LIST")]
     maps: Option<String>,
-    /// Other files to write: obj, svg, json, graphml, csv; or none [default: the file's, else obj].
+    /// Other files to write: obj, svg, json, graphml, csv; all or none [default: the file's, else obj].
     #[arg(long, value_name = "LIST")]
     format: Option<String>,
     /// Folder to write into [default: the leaf's name].
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
     // Nothing is grown before it is known that everything may be written.
     let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
-        jobs.iter().filter(|job| !job.is_done(&wanted)).map(|job| (job, job.resume())).collect()
+        jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
     } else {
         jobs.iter().map(|job| (job, overwrite)).collect()
     };
@@ -147,8 +147,8 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
 impl Job {
     /// Whether an earlier run finished this very leaf (the manifest is written last) and every
     /// file that is wanted is there.
-    fn is_done(&self, wanted: &Wanted) -> bool {
-        let names = io::file_names(&self.spec.name, &wanted.maps, &wanted.formats);
+    fn is_done(&self) -> bool {
+        let names = io::file_names(&self.spec.name, &self.maps, &self.formats);
         self.same_settings() && names.iter().all(|name| self.folder.join(name).is_file())
     }
 
@@ -215,15 +215,17 @@ fn write_failure(error: &io::Error) -> Failure {
     }
 }
 
-/// The items of a comma-separated list of words; `none` is an empty list.
+/// The items of a comma-separated list of words, `all` of them or `none`.
 fn words<T: Copy>(
     key: &str,
     list: &str,
     all: &[T],
     word: fn(T) -> &'static str,
 ) -> Result<Vec<T>, Failure> {
-    if list.trim() == "none" {
-        return Ok(Vec::new());
+    match list.trim() {
+        "none" => return Ok(Vec::new()),
+        "all" => return Ok(all.to_vec()),
+        _ => {}
     }
     let find = |item: &str| {
         all.iter().copied().find(|&kind| word(kind) == item).ok_or_else(|| {

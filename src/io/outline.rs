@@ -145,6 +145,7 @@ fn read(path: &Path, options: &OutlineOptions) -> Result<ImportedOutline, Outlin
         Some(format) => from_picture(path, format, options)?,
         None => from_text(path, file, &head, options)?,
     };
+    thin(&mut found.traced);
     mend(&mut found)?;
     place(found, options)
 }
@@ -229,6 +230,20 @@ fn from_text(
     let y_down = is_svg || !options.y_up;
     let traced = Traced { outline, cuts: Vec::new(), notes };
     Ok(Found2d { traced, kind: OutlineKind::Polygon, unit: 1.0, y_down })
+}
+
+/// Outlines of more points than this are thinned: 8192 texels show no more.
+const MANY_POINTS: usize = 16_384;
+
+/// Drops points that crowd.
+fn thin(traced: &mut Traced) {
+    let outline = &mut traced.outline;
+    if outline.len() > MANY_POINTS {
+        let given = outline.len();
+        let least = polygon::perimeter(outline) / MANY_POINTS as f64;
+        *outline = polygon::without_short_edges(outline, least);
+        traced.notes.push(format!("{given} points thinned to {}", outline.len()));
+    }
 }
 
 /// Takes small loops out of an outline that crosses itself.

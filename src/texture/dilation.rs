@@ -6,6 +6,9 @@ use super::SideMaps;
 use crate::raster::Grid;
 use crate::raster::distance::{NO_SITE, nearest_sites};
 
+/// The normal of a plain surface.
+const FLAT: [u8; 3] = [128, 128, 255];
+
 /// Fills both sides of a leaf, which cover the same texels.
 pub(super) fn spread(sides: [&mut SideMaps; 2]) {
     let alpha = sides[0].base_colour.map(|colour| colour[3]);
@@ -21,7 +24,8 @@ pub(super) fn spread(sides: [&mut SideMaps; 2]) {
             *texel = [r, g, b, 0];
         });
         fill(&mut side.height, from, |texel, source| *texel = source);
-        fill(&mut side.normal, from, |texel, source| *texel = source);
+        // A flat normal does no harm in a mipmap; the sides of a round petiole, spread, would.
+        fill(&mut side.normal, from, |texel, _| *texel = FLAT);
         fill(&mut side.bump, from, |texel, source| *texel = source);
     }
 }

@@ -67,7 +67,7 @@ parameters! {
         /// From particle to particle at the start; the finest veins are about as far apart.
         spacing_mm: number(2.0, 0.01..=1000.0, "mm"),
         /// How many particles start; 0 to take as many as the spacing gives.
-        count: count(0, 0..=1_000_000, "particles"),
+        count: count(0, 0..=50_000, "particles"),
         /// How far a particle moves in one step.
         step_mm: number(0.2, 0.001..=100.0, "mm"),
         /// Particles nearer to each other than this become one.

@@ -28,8 +28,8 @@ Examples:
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
 
---by growth leaves out the guided veins of a preset, which look alike under every growth type;
---set veins.guides.primary=pinnate keeps them.
+--by growth grows open venation without guided veins, which would look alike under every growth type;
+--set veins.guides.primary=pinnate and --set veins.algorithm=auxin-closed keep them.
 
 Measures: nodes; tips (free vein ends); sinuosity (path over chord of the primary and secondary veins,
 1 is straight); tip_step (share of the steps after which a vein is within 5 % of the apex).")]
@@ -66,9 +66,14 @@ struct Cell {
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
     let mut document = args.leaf.document(context)?;
-    // Laid veins look alike under every growth: leave the whole pattern to it, unless told otherwise.
-    if args.by == By::Growth && !args.leaf.sets("veins.guides.primary") {
-        document.set("veins.guides.primary=none", "--by growth")?;
+    // Laid veins and closed nets look alike under every growth: leave the whole pattern to it, as in
+    // the papers, unless told otherwise.
+    if args.by == By::Growth {
+        for (key, value) in [("veins.guides.primary", "none"), ("veins.algorithm", "auxin-open")] {
+            if !args.leaf.sets(key) {
+                document.set(&format!("{key}={value}"), "--by growth")?;
+            }
+        }
     }
     let seeds = match (&args.seeds, args.seed) {
         (Some(list), _) => {

@@ -77,7 +77,7 @@ pub(crate) struct LeafArgs {
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
-    /// darts; they make the whole pattern: guides and smoothing are off unless --set.
+    /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]
     sources: Option<PathBuf>,
     /// Set any key: `--set veins.kill_distance_mm=0.6`, a range `0.5..0.8`, `20±10%`.
@@ -157,7 +157,8 @@ impl LeafArgs {
         if let Some(path) = &self.sources {
             let points = read_sources(path)?;
             document.insert("veins.sources_mm", Value::Points(points), "--sources");
-            // Given sources make the whole pattern, as they stand: nothing laid, nothing smoothed.
+            // Given sources make the whole pattern, as they stand: nothing laid, joined or smoothed.
+            document.set("veins.algorithm=auxin-open", "--sources")?;
             document.set("veins.guides.primary=none", "--sources")?;
             document.set("veins.smoothing=0", "--sources")?;
         }

@@ -13,10 +13,14 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
         let value = document.value(&parameter.key).expect("every parameter has a default");
         insert(&mut tree, &parameter.key, drawn(&value, &parameter.key, seed));
     }
-    toml::Value::Table(tree).try_into().map_err(|error: toml::de::Error| DocumentError {
+    let spec: Result<LeafSpec, toml::de::Error> = toml::Value::Table(tree).try_into();
+    let mut spec = spec.map_err(|error| DocumentError {
         origin: "leaf".into(),
         problem: error.message().to_owned(),
-    })
+    })?;
+    // The length is drawn: only now is it known what the polygon measures.
+    spec.margin = spec.margin.at_length();
+    Ok(spec)
 }
 
 /// Drawn numbers are rounded to this many to the unit: a millionth of a millimetre or of a degree

@@ -254,18 +254,31 @@ pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
     match spec.kind {
         MarginKind::Unilobed => parametric::unilobed(spec),
         MarginKind::Polygon => {
+            let spec = spec.at_length();
             let vector = |p: &[f64; 2]| DVec2::from(*p);
-            let given: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
-            let apex = apex_vertex(&given);
-            let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), spec.length_mm);
-            let mut outline: Vec<DVec2> = given.iter().map(|p| *p * scale).collect();
-            if scale != 1.0 {
-                outline[apex].y = spec.length_mm;
-            }
-            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(|p| vector(p) * scale));
-            let cuts = cuts.map(Iterator::collect).collect();
+            let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
+            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
+            let apex = apex_vertex(&outline);
             Margin::new(outline, apex, cuts, "mend margin.polygon_mm there")
         }
+    }
+}
+
+impl MarginSpec {
+    /// The same with its polygon in millimetres: scaled so that the apex stands at `length_mm`.
+    #[must_use]
+    pub fn at_length(&self) -> Self {
+        let mut spec = self.clone();
+        let given: Vec<DVec2> = self.polygon_mm.iter().map(|p| DVec2::from(*p)).collect();
+        let apex = apex_vertex(&given);
+        let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), self.length_mm);
+        if self.kind == MarginKind::Polygon && scale != 1.0 {
+            for p in spec.polygon_mm.iter_mut().chain(spec.cuts_mm.iter_mut().flatten()) {
+                *p = p.map(|x| x * scale);
+            }
+            spec.polygon_mm[apex][1] = self.length_mm;
+        }
+        spec
     }
 }
 

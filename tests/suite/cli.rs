@@ -149,6 +149,11 @@ fn an_outline_keeps_no_path_and_its_leaf_toml_gives_the_same_bytes() {
     let toml = std::fs::read_to_string(folder.path().join("one/leaf.toml")).unwrap();
     assert!(!toml.contains("my-outline"), "{toml}");
     assert!(toml.contains("length_mm = 50.0"), "{toml}");
+    // The polygon is in millimetres: its apex stands at the length.
+    let spec = venation::document::Document::parse(&toml, "leaf.toml")
+        .and_then(|document| document.resolve(venation::seed::Seed(1)))
+        .unwrap();
+    assert!(spec.margin.polygon_mm.contains(&[0.0, 50.0]), "{:?}", spec.margin.polygon_mm);
     std::fs::remove_file(folder.path().join("my-outline.csv")).unwrap();
     succeed(folder.path(), &["generate", "one/leaf.toml", "-o", "two"]);
     assert_same(&folder.path().join("one"), &folder.path().join("two"));

@@ -28,11 +28,21 @@ macro_rules! presets {
 }
 
 presets! {
+    "acer-platanoides", "maple", "five lobes with few long-pointed teeth; bright green";
+    "betula-pendula", "birch", "small, nearly a rhomb; doubly toothed";
+    "castanea-sativa", "chestnut", "long, one bristle-tipped tooth to each of many side veins";
+    "cercis-canadensis", "redbud", "broad heart, five to seven veins from the base";
+    "cinnamomum-camphora", "camphor", "elliptic and glossy, three arching main veins";
     "cornus-florida", "dogwood", "ovate, veins arching towards the tip; glaucous below";
     "fagus-sylvatica", "beech", "oval, glossy green, nearly straight side veins";
+    "ficus-religiosa", "bodhi", "broad, drawn out into a long drip tip; looped side veins";
+    "ginkgo-biloba", "ginkgo", "a notched fan of forking veins";
+    "hedera-helix", "ivy", "five pointed lobes, very dark, pale veins";
     "magnolia-grandiflora", "magnolia", "long elliptic, thick and glossy; rusty felt below";
+    "poa-pratensis", "grass", "a long narrow blade, veins side by side";
     "populus-tremula", "aspen", "nearly round, on a long thin petiole; autumn yellow";
     "pyrus-communis", "pear", "ovate, dark and shiny, a dense fine net";
+    "quercus-robur", "oak", "rounded lobes, two ears at the base";
     "salix-alba", "willow", "narrow lance, grey-green; silvery below";
     "syringa-vulgaris", "lilac", "heart-shaped, soft mid green";
     "tilia-cordata", "linden", "heart-shaped, oblique base, abrupt tip";

@@ -152,8 +152,11 @@ impl Job {
         self.same_settings() && names.iter().all(|name| self.folder.join(name).is_file())
     }
 
+    /// Whether the leaf there is this one, whatever was written of it.
     fn same_settings(&self) -> bool {
-        std::fs::read_to_string(self.folder.join("leaf.toml")).is_ok_and(|text| text == self.toml)
+        let leaf = |text: &str| text.split("\n[output]").next().map(str::to_owned);
+        std::fs::read_to_string(self.folder.join("leaf.toml"))
+            .is_ok_and(|text| leaf(&text) == leaf(&self.toml))
     }
 
     /// A killed run of this very leaf may be completed over; other people's files may not.

@@ -9,6 +9,7 @@ pub mod polygon;
 pub mod scatter;
 pub mod segment_grid;
 pub mod segments;
+pub mod sparse;
 
 pub use glam::DVec2;
 

@@ -38,7 +38,7 @@ parameters! {
         left: group(SideSpec, SideSpec::default()),
         /// How far the left side is its own: 1 as given, 0 the mirror of the right side.
         asymmetry: number(1.0, 0.0..=1.0, ""),
-        /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y.
+        /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y; scaled to `length_mm`.
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.
         cuts_mm: lines(),
@@ -255,12 +255,24 @@ pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
         MarginKind::Unilobed => parametric::unilobed(spec),
         MarginKind::Polygon => {
             let vector = |p: &[f64; 2]| DVec2::from(*p);
-            let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
-            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
-            let apex = apex_vertex(&outline);
+            let given: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
+            let apex = apex_vertex(&given);
+            let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), spec.length_mm);
+            let mut outline: Vec<DVec2> = given.iter().map(|p| *p * scale).collect();
+            if scale != 1.0 {
+                outline[apex].y = spec.length_mm;
+            }
+            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(|p| vector(p) * scale));
+            let cuts = cuts.map(Iterator::collect).collect();
             Margin::new(outline, apex, cuts, "mend margin.polygon_mm there")
         }
     }
+}
+
+/// What brings a polygon of one length to another; 1 for one that is not placed.
+fn scale_to(from_mm: f64, to_mm: f64) -> f64 {
+    let scale = to_mm / from_mm;
+    if from_mm > 0.0 && scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
 }
 
 /// The vertex on the +y axis that lies highest: where a placed polygon has its apex.

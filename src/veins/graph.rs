@@ -84,9 +84,9 @@ impl VeinGraph {
         id
     }
 
-    /// The same graph with every node moved. `place` keeps positions distinct.
+    /// The same graph with every node moved, by id. `place` keeps positions distinct.
     #[must_use]
-    pub fn mapped(mut self, place: impl Fn(DVec2) -> DVec2) -> Self {
+    pub fn mapped(mut self, mut place: impl FnMut(DVec2) -> DVec2) -> Self {
         self.positions.iter_mut().for_each(|p| *p = place(*p));
         self
     }

@@ -4,12 +4,15 @@
 //! widths, orders and everything after them are shared.
 
 pub mod auxin;
+pub mod chains;
+pub mod flow;
 pub mod graph;
 pub mod guides;
 pub mod metrics;
 pub mod orders;
 pub mod particles;
 pub mod planar;
+pub mod relax;
 pub mod smooth;
 pub mod widths;
 
@@ -35,6 +38,16 @@ words! {
         AuxinClosed = "auxin-closed",
         /// Veins are the trails of particles that flow to the petiole (Rodkaew et al. 2002).
         Particles = "particles",
+    }
+}
+
+words! {
+    /// Where the widths of veins come from.
+    pub enum Widths {
+        /// The number of tips behind them, by Murray's law; what joins veins carries nothing.
+        Murray = "murray",
+        /// The flow through them, to which they adapt: in loops, too.
+        Flow = "flow",
     }
 }
 
@@ -67,6 +80,20 @@ parameters! {
         tip_radius_mm: number(0.03, 0.0001..=10.0, "mm"),
         /// Murray's exponent: the parent's radius to this power is the sum over its children.
         murray_exponent: number(3.0, 1.0..=10.0, ""),
+        /// What each order adds to Murray's exponent, from the second on; it stays from 1 to 10. The
+        /// order is that of the vein that divides.
+        exponent_change: number(0.0, -9.0..=9.0, ""),
+        /// No vein is drawn finer; 0 for the radius of the tips.
+        least_radius_mm: number(0.0, 0.0..=10.0, "mm"),
+        /// How evenly a vein tapers between its branches: 0 in a step at each, 1 all the way.
+        taper: number(0.0, 0.0..=1.0, ""),
+        /// Where widths come from: `murray` counts tips, `flow` lets veins adapt to what flows through
+        /// them, loops included, and takes seconds for each 10 000 junctions.
+        widths: choice(Widths, Widths::Murray),
+        /// Share of the demand for water that comes and goes, for `widths = "flow"`; loops live on it.
+        fluctuation: number(0.5, 0.0..=1.0, ""),
+        /// How often junctions move towards a balance of the veins' pull; about 5 gives natural angles.
+        relaxation: count(0, 0..=100, "sweeps"),
         /// How far kinks of grown veins are drawn straight; above 0 long segments become curves too.
         smoothing: number(0.0, 0.0..=1.0, ""),
         /// Veins that are laid before auxin takes over.
@@ -101,13 +128,15 @@ impl std::fmt::Display for Unreached {
 /// # Guarantees
 ///
 /// - One radius (mm, positive) and one order (1 = primary) for each node.
-/// - A radius is never smaller than a child's; an order never greater than a child's.
+/// - A radius is never smaller than a child's, unless widths come from the flow; an order is never
+///   greater than a child's.
 /// - Every node lies inside the margin it was grown in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Venation {
     graph: VeinGraph,
     radii: Vec<f64>,
     orders: Vec<u8>,
+    widths: Widths,
     nodes_after_step: Vec<u32>,
     sources: usize,
     unreached: Unreached,
@@ -148,7 +177,8 @@ impl Venation {
         assert_eq!(orders.len(), graph.len(), "an order for every node");
         let nodes_after_step = vec![graph.len() as u32];
         let unreached = Unreached::default();
-        Self { graph, radii, orders, nodes_after_step, sources: 0, unreached }
+        let widths = Widths::Murray;
+        Self { graph, radii, orders, widths, nodes_after_step, sources: 0, unreached }
     }
 
     /// The nodes and edges.
@@ -218,7 +248,8 @@ impl Venation {
         }
         let shrinks = |&(parent, child): &(NodeId, NodeId)| {
             let (parent, child) = (parent as usize, child as usize);
-            self.radii[parent] < self.radii[child] || self.orders[parent] > self.orders[child]
+            let thinner = self.radii[parent] < self.radii[child];
+            (thinner && self.widths == Widths::Murray) || self.orders[parent] > self.orders[child]
         };
         if let Some((parent, child)) = self.graph.edges().find(shrinks) {
             return Some(format!(
@@ -269,17 +300,18 @@ pub fn grow_from(
         Algorithm::AuxinOpen | Algorithm::AuxinClosed => {
             auxin::grow(spec, blade, start, &mut seed.stream(Stage::AuxinSources), observer)?
         }
-        Algorithm::Particles => return flow(spec, blade, roots, seed, observer),
+        Algorithm::Particles => return trails(spec, blade, roots, seed, observer),
     };
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
     let smooth::Smoothed { graph, nodes_after_step } =
         smooth::smoothed(spec, blade.finished(), graph, grown.nodes_after_step);
-    let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
-    let orders = orders::by_width(&graph, &radii);
+    let graph = relax::relaxed(spec, blade.finished(), graph);
+    let (radii, orders) = widths::radii_and_orders(spec, &graph, spec.tip_radius_mm, observer)?;
     Ok(Venation {
         graph,
         radii,
         orders,
+        widths: spec.widths,
         nodes_after_step,
         sources: grown.sources,
         unreached: grown.unreached,
@@ -287,7 +319,7 @@ pub fn grow_from(
 }
 
 /// Veins as the trails of particles in the finished blade.
-fn flow(
+fn trails(
     spec: &VeinSpec,
     blade: &GrowingBlade,
     roots: &[DVec2],
@@ -300,9 +332,10 @@ fn flow(
     // Every tip is one particle: Murray's law on tips is his law on energy.
     let tip =
         widths::radius(spec.tip_radius_mm, spec.particles.initial_energy, spec.murray_exponent);
-    let radii = widths::murray(&flowed.graph, tip, spec.murray_exponent);
-    let orders = orders::by_width(&flowed.graph, &radii);
-    Ok(Venation { sources: flowed.particles, ..Venation::new(flowed.graph, radii, orders) })
+    let graph = relax::relaxed(spec, blade.finished(), flowed.graph);
+    let (radii, orders) = widths::radii_and_orders(spec, &graph, tip, observer)?;
+    let widths = spec.widths;
+    Ok(Venation { widths, sources: flowed.particles, ..Venation::new(graph, radii, orders) })
 }
 
 /// Refuses settings under which growth would make no sense or never end.
@@ -320,6 +353,10 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         "closing_share" => spec.closing_share,
         "veinlet_scale" => spec.veinlet_scale,
         "smoothing" => spec.smoothing,
+        "exponent_change" => spec.exponent_change,
+        "least_radius_mm" => spec.least_radius_mm,
+        "taper" => spec.taper,
+        "fluctuation" => spec.fluctuation,
         _ => spec.murray_exponent,
     };
     for parameter in &defaults {
@@ -361,6 +398,17 @@ pub enum VeinError {
         /// What is wrong and what to change.
         problem: String,
     },
+    /// Too many junctions for widths from the flow.
+    #[error(
+        "veins.widths = \"flow\" takes at most {limit} junctions and ends, here are {count}: grow \
+         fewer veins (veins.source_spawn_distance_mm) or take \"murray\""
+    )]
+    Junctions {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
 }
 
 impl VeinError {
@@ -368,3 +416,6 @@ impl VeinError {
         Self::Setting { key: key.into(), value, problem: problem.into() }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -50,6 +50,19 @@ pub fn by_width(graph: &VeinGraph, radii: &[f64]) -> Vec<u8> {
     orders
 }
 
+/// The child that carries each vein on, at the same order.
+#[must_use]
+pub fn heirs(graph: &VeinGraph, orders: &[u8]) -> Vec<Option<NodeId>> {
+    let mut heirs: Vec<Option<NodeId>> = vec![None; graph.len()];
+    for (parent, child) in graph.edges() {
+        let carries_on = orders[parent as usize] == orders[child as usize];
+        if carries_on && heirs[parent as usize].is_none() {
+            heirs[parent as usize] = Some(child);
+        }
+    }
+    heirs
+}
+
 /// The child that carries the vein on.
 fn main_child(
     graph: &VeinGraph,

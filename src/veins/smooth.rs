@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::VeinSpec;
 use super::graph::{NodeId, VeinGraph};
-use super::{planar, widths};
+use super::{orders, planar, widths};
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -111,15 +111,7 @@ impl Blade {
 /// The child that carries each vein on: the widest, and among equals the straightest.
 fn heirs(graph: &VeinGraph, spec: &VeinSpec) -> Vec<Option<NodeId>> {
     let radii = widths::murray(graph, spec.tip_radius_mm, spec.murray_exponent);
-    let orders = super::orders::by_width(graph, &radii);
-    let mut heirs: Vec<Option<NodeId>> = vec![None; graph.len()];
-    for (parent, child) in graph.edges() {
-        let carries_on = orders[parent as usize] == orders[child as usize];
-        if carries_on && heirs[parent as usize].is_none() {
-            heirs[parent as usize] = Some(child);
-        }
-    }
-    heirs
+    orders::heirs(graph, &orders::by_width(graph, &radii))
 }
 
 /// Every node moved towards the middle of its parent and its heir.

@@ -1,10 +1,51 @@
 //! Radii of the veins, from the tips to the petiole.
 //!
-//! Source: Murray, "The physiological principle of minimum work", PNAS 12, 1926: where veins of radii
+//! Sources: Murray, "The physiological principle of minimum work", PNAS 12, 1926: where veins of radii
 //! r₁ … rₙ meet, the parent has rᵉ = r₁ᵉ + … + rₙᵉ, with e = 3 for laminar flow. Foster prints the law
-//! without the sum.
+//! without the sum. Departs from it where asked: e may change with the order of the parent, the finest
+//! veins have a floor, and a vein may taper evenly between its branches, not in a step at each.
 
-use super::graph::VeinGraph;
+use glam::DVec2;
+
+use super::graph::{NodeId, VeinGraph};
+use super::{VeinError, VeinSpec, Widths, flow, orders};
+use crate::observer::Observer;
+
+/// Murray's exponent is never less (areas and more are kept) nor more (nearly nothing is).
+const EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=10.0;
+
+/// The radius (mm) and the order of the vein at each node, as `spec` says, tips of `tip_radius_mm`.
+///
+/// # Errors
+///
+/// Those of [`flow::radii`].
+pub fn radii_and_orders(
+    spec: &VeinSpec,
+    graph: &VeinGraph,
+    tip_radius_mm: f64,
+    observer: &mut dyn Observer,
+) -> Result<(Vec<f64>, Vec<u8>), VeinError> {
+    let mut radii = murray(graph, tip_radius_mm, spec.murray_exponent);
+    let mut orders = orders::by_width(graph, &radii);
+    if spec.exponent_change != 0.0 {
+        let exponent = |order: u8| {
+            let exponent = spec.murray_exponent + spec.exponent_change * f64::from(order - 1);
+            exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())
+        };
+        radii = murray_by_order(graph, &orders, tip_radius_mm, exponent);
+        orders = orders::by_width(graph, &radii);
+    }
+    let floor = spec.least_radius_mm.max(tip_radius_mm);
+    if spec.widths == Widths::Flow {
+        radii = flow::radii(graph, &radii, floor, spec.fluctuation, observer)?;
+        orders = orders::by_width(graph, &radii);
+    }
+    if spec.taper > 0.0 {
+        taper(graph, &orders, &mut radii, spec.taper);
+    }
+    radii.iter_mut().for_each(|radius| *radius = radius.max(spec.least_radius_mm));
+    Ok((radii, orders))
+}
 
 /// Radius of the vein at each node (mm); tips have `tip_radius_mm`. Loop-closing edges carry no
 /// flow. One pass in reverse order of birth.
@@ -23,6 +64,66 @@ pub fn murray(graph: &VeinGraph, tip_radius_mm: f64, exponent: f64) -> Vec<f64> 
     flow.into_iter().map(|flow| radius(tip_radius_mm, flow, exponent)).collect()
 }
 
+/// The same with an exponent that depends on the order of the vein that divides.
+#[must_use]
+pub fn murray_by_order(
+    graph: &VeinGraph,
+    orders: &[u8],
+    tip_radius_mm: f64,
+    exponent: impl Fn(u8) -> f64,
+) -> Vec<f64> {
+    let counts = graph.child_counts();
+    // Of the children seen so far: the widest, and the sum at a fork, in units of the tip.
+    let mut widest = vec![0.0f64; graph.len()];
+    let mut sums = vec![0.0f64; graph.len()];
+    for node in (0..graph.len()).rev() {
+        widest[node] = match counts[node] {
+            0 => 1.0,
+            // A vein that goes on keeps its radius, to the last bit.
+            1 => widest[node],
+            // Rounding must not make it thinner than a child.
+            _ => root(sums[node], exponent(orders[node])).max(widest[node]),
+        };
+        if let Some(parent) = graph.parent(node as NodeId).map(|id| id as usize) {
+            if counts[parent] > 1 {
+                sums[parent] += libm::pow(widest[node], exponent(orders[parent]));
+            }
+            widest[parent] = widest[parent].max(widest[node]);
+        }
+    }
+    widest.into_iter().map(|radius| radius * tip_radius_mm).collect()
+}
+
+/// Makes every vein taper evenly from a branch to the next (by `share` of the way from Murray's
+/// steps), and towards its tip. Radii only grow, so none falls below a child's.
+fn taper(graph: &VeinGraph, orders: &[u8], radii: &mut [f64], share: f64) {
+    let heirs = orders::heirs(graph, orders);
+    let position = |node: NodeId| graph.positions()[node as usize];
+    let begins = |&node: &NodeId| {
+        graph.parent(node).is_none_or(|parent| heirs[parent as usize] != Some(node))
+    };
+    for start in (0..graph.len() as NodeId).filter(begins) {
+        let vein: Vec<NodeId> =
+            std::iter::successors(Some(start), |&node| heirs[node as usize]).collect();
+        let steps: Vec<f64> = vein.iter().map(|&node| radii[node as usize]).collect();
+        let mut from = 0;
+        while from + 1 < vein.len() {
+            // The stretch as far as the radius is that after the step.
+            let end = (from + 1..vein.len()).take_while(|&i| steps[i] == steps[from + 1]);
+            let to = end.last().unwrap_or(from + 1);
+            let points: Vec<DVec2> = vein[from..=to].iter().map(|&node| position(node)).collect();
+            let total: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+            let excess = share * (steps[from] - steps[to]).max(0.0);
+            let mut left = total;
+            for i in from + 1..to {
+                left -= points[i - from - 1].distance(points[i - from]);
+                radii[vein[i] as usize] = steps[to] + excess * (left / total).max(0.0);
+            }
+            from = to;
+        }
+    }
+}
+
 /// Radius of a vein that carries the flow of so many tips (mm).
 #[must_use]
 pub fn radius(tip_radius_mm: f64, tips: f64, exponent: f64) -> f64 {
@@ -38,7 +139,7 @@ fn root(flow: f64, exponent: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use crate::observer::Silent;
 
     #[test]
     fn the_cubes_at_a_fork_add_up() {
@@ -55,5 +156,55 @@ mod tests {
         assert_eq!(radii[root as usize], radii[fork as usize]);
         assert!(radii[2..].iter().all(|&r| r == 0.5));
         assert_eq!(murray(&graph, 1.0, 1.0)[0], 3.0);
+    }
+
+    /// A trunk with a fork into a limb with two tips, and a tip.
+    fn limb() -> (VeinGraph, [NodeId; 6]) {
+        let mut graph = VeinGraph::new();
+        let root = graph.add_root(DVec2::ZERO);
+        let fork = graph.sprout(root, DVec2::Y);
+        let limb = graph.sprout(fork, DVec2::new(0.0, 2.0));
+        let tips = [(0.0, 3.0), (1.0, 3.0)].map(|p| graph.sprout(limb, DVec2::from(p)));
+        let side = graph.sprout(fork, DVec2::new(-1.0, 2.0));
+        (graph, [root, fork, limb, tips[0], tips[1], side])
+    }
+
+    #[test]
+    fn each_order_has_its_exponent() {
+        let (graph, [root, fork, limb, ..]) = limb();
+        let orders = [1, 1, 2, 2, 3, 2];
+        let radii = murray_by_order(&graph, &orders, 0.5, |order| f64::from(order) + 1.0);
+        let expected = libm::cbrt(2.0);
+        assert!((radii[limb as usize] / 0.5 - expected).abs() < 1e-15);
+        let expected = (expected * expected + 1.0).sqrt();
+        assert!((radii[fork as usize] / 0.5 - expected).abs() < 1e-15);
+        assert_eq!(radii[root as usize], radii[fork as usize]);
+        let same = murray_by_order(&graph, &orders, 0.5, |_| 3.0);
+        let murray = murray(&graph, 0.5, 3.0);
+        assert!(same.iter().zip(&murray).all(|(a, b)| (a - b).abs() < 1e-15), "{same:?}");
+    }
+
+    #[test]
+    fn the_floor_lifts_the_finest_veins_only() {
+        let (graph, [root, _, limb, tip, ..]) = limb();
+        let spec = VeinSpec { tip_radius_mm: 0.1, least_radius_mm: 0.12, ..VeinSpec::default() };
+        let (radii, _) = radii_and_orders(&spec, &graph, 0.1, &mut Silent).expect("radii");
+        let [tip, limb, root] = [tip, limb, root].map(|node| radii[node as usize]);
+        assert_eq!([tip, limb, root], [0.12, 0.1 * libm::cbrt(2.0), 0.1 * libm::cbrt(3.0)]);
+    }
+
+    #[test]
+    fn a_vein_tapers_evenly_between_branches() {
+        let mut graph = VeinGraph::new();
+        let mut midrib = vec![graph.add_root(DVec2::ZERO)];
+        for i in 1..=8 {
+            midrib.push(graph.sprout(midrib[i - 1], DVec2::new(0.0, i as f64)));
+        }
+        graph.sprout(midrib[4], DVec2::new(1.0, 5.0));
+        let orders = orders::by_width(&graph, &murray(&graph, 0.5, 1.0));
+        let mut radii = murray(&graph, 0.5, 1.0);
+        taper(&graph, &orders, &mut radii, 1.0);
+        let along: Vec<f64> = midrib.iter().map(|&node| radii[node as usize]).collect();
+        assert_eq!(along, [1.0, 1.0, 1.0, 1.0, 1.0, 0.875, 0.75, 0.625, 0.5]);
     }
 }

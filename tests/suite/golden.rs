@@ -116,6 +116,7 @@ fn in_outline(preset: &str, file: &str, settings: &[&str]) -> Document {
     let imported = outline::import(&path, &options).expect("the fixture imports");
     let mut document = document(preset, settings);
     use venation::document::Value;
+    document.set("margin.length_mm=70", "golden").expect("a valid setting");
     document.insert("margin.kind", Value::Text("polygon".into()), "golden");
     document.insert("margin.polygon_mm", Value::Points(imported.polygon_mm), "golden");
     document.insert("margin.cuts_mm", Value::Lines(imported.cuts_mm), "golden");
@@ -131,7 +132,7 @@ fn golden_presets_front_and_back() {
         panels.push(panel(leaf.textures.front.base_colour, &name));
         panels.push(panel(leaf.textures.back.base_colour, "back"));
     }
-    compare("readme_presets", &sheet("presets", &panels, 4, 384));
+    compare("readme_presets", &sheet("presets", &panels, 6, 320));
 }
 
 #[test]

@@ -39,6 +39,7 @@ fn check(outline: &ImportedOutline, length_mm: f64) {
     assert_ne!(outline.kind, OutlineKind::Auto);
     let spec = MarginSpec {
         kind: MarginKind::Polygon,
+        length_mm,
         polygon_mm: outline.polygon_mm.clone(),
         cuts_mm: outline.cuts_mm.clone(),
         ..MarginSpec::default()

@@ -52,5 +52,6 @@ proptest! {
             TestCaseError::fail(format!("{} seed {seed}: {e}", preset.name))
         })?;
         prop_assert_eq!(margin.check(), None);
+        prop_assert!((margin.length_mm() - spec.margin.length_mm).abs() < 1e-9);
     }
 }

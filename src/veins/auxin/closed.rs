@@ -12,6 +12,9 @@
 //! graph; a tagged source waits no longer than twice the time that the farthest of its veins needs on
 //! a straight way, because one that others hold away would be called for ever; loops are stored.
 
+mod reached;
+mod states;
+
 use glam::DVec2;
 
 use super::callers::Callers;
@@ -125,12 +128,6 @@ impl Calls {
         }
     }
 
-    /// The place of the state of a source that is alive.
-    fn slot(&self, source: u32) -> Option<usize> {
-        let slot = self.slots[source as usize];
-        (slot != NONE && self.outer2[slot as usize] != DEAD).then_some(slot as usize)
-    }
-
     /// How far a node can matter to a source: by calling or by having come.
     fn search(&self, metric: Metric) -> f64 {
         metric.length(self.reach_mm.max(self.kill_mm))
@@ -138,57 +135,6 @@ impl Calls {
 
     fn kill2(&self, metric: Metric) -> f64 {
         metric.length(self.kill_mm).powi(2)
-    }
-
-    /// Looks the neighbours of a place up from nothing.
-    fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
-        let search = self.search(metric);
-        let mut around = Around::EMPTY;
-        let (low, high) =
-            ((self.bounds.min - s) * metric.stretch, (self.bounds.max - s) * metric.stretch);
-        let stretch = metric.stretch.min_element();
-        nodes.grid().for_each_outwards(
-            &mut around,
-            s,
-            |around, clear| {
-                clear * stretch <= search && !around.is_settled(clear * stretch, low, high)
-            },
-            |around, node, p| {
-                let distance2 = metric.distance_squared(s, p);
-                if distance2 <= search * search {
-                    around.offer(s, node, p, distance2, nodes, metric);
-                }
-            },
-        );
-        around
-    }
-
-    /// Drops the states of the dead and puts the others in order of place.
-    fn tidy(&mut self) {
-        let size = self.bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let key = |p: DVec2| {
-            let place = ((p - self.bounds.min) / size * f64::from(u16::MAX)).max(DVec2::ZERO);
-            spread(place.x as u32) | spread(place.y as u32) << 1
-        };
-        let mut order: Vec<(u64, u32)> = Vec::with_capacity(self.living);
-        for (i, state) in self.states.iter().enumerate() {
-            if self.outer2[i] == DEAD {
-                self.slots[state.source as usize] = NONE;
-            } else {
-                order.push((key(state.place), i as u32));
-            }
-        }
-        order.sort_unstable();
-        self.states = order.iter().map(|&(_, i)| self.states[i as usize]).collect();
-        self.outer2 = order.iter().map(|&(_, i)| self.outer2[i as usize]).collect();
-        for (slot, state) in self.states.iter().enumerate() {
-            self.slots[state.source as usize] = slot as u32;
-        }
-    }
-
-    fn store(&mut self, i: usize, around: Around) {
-        self.states[i].around = around;
-        self.outer2[i] = around.most2();
     }
 
     /// Whether a source sees its neighbour in a sixth.
@@ -212,158 +158,10 @@ impl Calls {
         clear
     }
 
-    /// Tells the sources around of a new node.
-    fn offer(&mut self, node: NodeId, metric: Metric, nodes: &Nodes) {
-        let p = nodes.position(node);
-        let search = self.search(metric);
-        let (search2, kill2) = (search * search, self.kill2(metric));
-        let slots = self.states.len() as u32;
-        let Self { index, states, outer2, arrived, reached, .. } = self;
-        let mut offer = |slot: u32, about2: f64| {
-            let i = slot as usize;
-            if about2 * (1.0 - 1e-9) >= outer2[i] {
-                return;
-            }
-            let state = &mut states[i];
-            let distance2 = metric.distance_squared(state.place, p);
-            if distance2 >= outer2[i] || distance2 > search2 {
-                return;
-            }
-            state.around.offer(state.place, node, p, distance2, nodes, metric);
-            outer2[i] = state.around.most2();
-            if !state.is_acting {
-                state.is_acting = true;
-                arrived.push(state.source);
-            }
-            if distance2 <= kill2 && state.tag == NONE {
-                reached.push(state.source);
-            }
-        };
-        if search.is_finite() {
-            // The tree knows only the frame of the mature leaf, where the circle is an ellipse.
-            let radius = metric.reach(search).max_element();
-            let scale2 = metric.stretch.min_element().powi(2);
-            index.for_each_within(p, radius, |slot, about2| offer(slot, about2 * scale2));
-        } else {
-            (0..slots).for_each(|slot| offer(slot, 0.0));
-        }
-    }
-
-    /// Which of the relative neighbours of a tagged source it waits for: those it was tagged with and
-    /// what grew out of them.
-    fn follow_tag(&mut self, i: usize, nodes: &Nodes) {
-        let tag = &mut self.tags[self.states[i].tag as usize];
-        let mut veins = [NONE; SECTORS];
-        for (k, node, _) in self.states[i].around.neighbours() {
-            let is_of = |vein: NodeId| tag.veins.contains(&vein);
-            if is_of(node) || nodes.graph().parent(node).is_some_and(is_of) {
-                veins[k] = node;
-            }
-        }
-        tag.veins = veins;
-    }
-
-    /// Tags a source that a node has come to.
-    fn tag(&mut self, i: usize, metric: Metric, at: At<'_>) {
-        let limit2 = self.search(metric).powi(2);
-        let mut veins = [NONE; SECTORS];
-        let mut farthest2 = 0.0f64;
-        let around = self.states[i].around;
-        for (k, node, distance2) in around.neighbours() {
-            if distance2 <= limit2 && self.sees(i, k, node, at) {
-                veins[k] = node;
-                farthest2 = farthest2.max(distance2);
-            }
-        }
-        let steps = PATIENCE * farthest2.sqrt() / metric.length(self.step_mm);
-        let tag = Tag { veins, last_step: at.step + steps.ceil() as u64 };
-        self.states[i].tag = match self.free_tags.pop() {
-            Some(place) => {
-                self.tags[place as usize] = tag;
-                place
-            }
-            None => {
-                self.tags.push(tag);
-                self.tags.len() as u32 - 1
-            }
-        };
-    }
-
-    /// Removes a source; the veins that have come to it, the first that grew first.
-    fn remove(&mut self, i: usize, kill2: f64) -> Vec<NodeId> {
-        let tag = self.tags[self.states[i].tag as usize];
-        let come = |&(k, node, distance2): &(usize, NodeId, f64)| {
-            tag.veins[k] == node && distance2 <= kill2
-        };
-        let mut veins: Vec<NodeId> =
-            self.states[i].around.neighbours().filter(come).map(|(_, node, _)| node).collect();
-        veins.sort_unstable();
-        self.free_tags.push(self.states[i].tag);
-        self.states[i].tag = NONE;
-        self.outer2[i] = DEAD;
-        self.living -= 1;
-        veins
-    }
-
-    /// Removes the tagged sources whose veins have all come, or that have waited long enough.
-    fn settle_reached(
-        &mut self,
-        blade: &GrowingBlade,
-        step: u64,
-        metric: Metric,
-        nodes: &mut Nodes,
-        patience: bool,
-    ) -> Vec<u32> {
-        let kill2 = self.kill2(metric);
-        let mut reached = std::mem::take(&mut self.reached);
-        reached.sort_unstable();
-        reached.dedup();
-        let mut dead = Vec::new();
-        let mut meetings = Vec::new();
-        reached.retain(|&source| {
-            let Some(i) = self.slot(source) else { return false };
-            let at = At { blade, step, nodes };
-            if self.states[i].tag == NONE {
-                if self.states[i].around.least2() > kill2 {
-                    return false;
-                }
-                self.tag(i, metric, at);
-            } else {
-                self.follow_tag(i, nodes);
-            }
-            let tag = self.tags[self.states[i].tag as usize];
-            let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
-                tag.veins[k] == node && distance2 > kill2
-            };
-            let waits = patience
-                && step < tag.last_step
-                && self.states[i].around.neighbours().any(is_on_its_way);
-            if waits {
-                return true;
-            }
-            let veins = self.remove(i, kill2);
-            dead.push(source);
-            if veins.len() > 1 {
-                meetings.push((self.states[i].place, veins));
-            }
-            false
-        });
-        self.reached = reached;
-        for (place, veins) in meetings {
-            nodes.meet(place, &veins, blade, step, metric);
-        }
-        dead
-    }
-
-    /// Ends the waiting of all tagged sources; the ids of the dead.
-    pub(super) fn settle(
-        &mut self,
-        blade: &GrowingBlade,
-        step: u64,
-        metric: Metric,
-        nodes: &mut Nodes,
-    ) -> Vec<u32> {
-        self.settle_reached(blade, step, metric, nodes, false)
+    /// The calls of a called node, by the ids of the callers.
+    fn calls_of(&self, node: NodeId) -> impl Iterator<Item = &Call> + '_ {
+        let call = |at: u32| (at != NONE).then(|| &self.calls[at as usize]);
+        std::iter::successors(call(self.called[node as usize].first), move |last| call(last.next))
     }
 
     /// The same sources in open venation.
@@ -554,21 +352,4 @@ impl Callers for Calls {
         }
         unreached
     }
-}
-
-impl Calls {
-    /// The calls of a called node, by the ids of the callers.
-    fn calls_of(&self, node: NodeId) -> impl Iterator<Item = &Call> + '_ {
-        let call = |at: u32| (at != NONE).then(|| &self.calls[at as usize]);
-        std::iter::successors(call(self.called[node as usize].first), move |last| call(last.next))
-    }
-}
-
-/// The lower sixteen bits with a zero before each.
-fn spread(bits: u32) -> u64 {
-    let mut x = u64::from(bits & 0xffff);
-    x = (x | x << 8) & 0x00ff_00ff;
-    x = (x | x << 4) & 0x0f0f_0f0f;
-    x = (x | x << 2) & 0x3333_3333;
-    (x | x << 1) & 0x5555_5555
 }

@@ -1,6 +1,6 @@
 //! Leaves that come with `venation`: one TOML file each in `presets/`, embedded in the program.
 
-use crate::document::{Document, DocumentError};
+use crate::document::{self, Document, DocumentError};
 
 /// A leaf that comes with `venation`.
 #[derive(Debug, Clone, Copy)]
@@ -57,13 +57,8 @@ pub fn find(name: &str) -> Option<&'static Preset> {
 /// The preset's name nearest to a misspelt one.
 #[must_use]
 pub fn nearest(name: &str) -> Option<&'static str> {
-    PRESETS
-        .iter()
-        .flat_map(|preset| [preset.name, preset.common])
-        .map(|candidate| (strsim::normalized_damerau_levenshtein(name, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > 0.5)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
+    // Looser than for keys: names are short, and a slip weighs more in them.
+    document::nearest(name, 0.5, PRESETS.iter().flat_map(|preset| [preset.name, preset.common]))
 }
 
 impl Preset {

@@ -75,13 +75,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             }
         }
     }
-    let seeds = match (&args.seeds, args.seed) {
-        (Some(list), _) => {
-            seeds::parse(list).map_err(|problem| Failure::Input(format!("--seeds: {problem}")))?
-        }
-        (None, Some(seed)) => vec![seed],
-        (None, None) => vec![document.seed.unwrap_or(1)],
-    };
+    let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
     super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
     let cases = args.by.cases();
     let work: Vec<(Case, u64)> =

@@ -123,13 +123,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
 }
 
 fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
-    let seeds = match (&args.seeds, args.seed) {
-        (Some(list), _) => {
-            seeds::parse(list).map_err(|problem| Failure::Input(format!("--seeds: {problem}")))?
-        }
-        (None, Some(seed)) => vec![seed],
-        (None, None) => vec![document.seed.unwrap_or(1)],
-    };
+    let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
     let single = seeds.len() == 1;
     let jobs = seeds.into_iter().map(|seed| {
         let spec = leaf_args::resolve(document, seed)?;

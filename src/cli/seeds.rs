@@ -1,7 +1,21 @@
 //! The grammar of `--seeds`: `1-3,5,7-20:2`, as render managers write frame ranges.
 
+use super::Failure;
+
 /// More leaves than this in one run is taken for a slip of the finger.
 const MOST: usize = 1_000_000;
+
+/// The seeds a command works on: those of `--seeds`, else `--seed`, else the file's, else 1.
+pub(crate) fn chosen(
+    list: Option<&str>,
+    one: Option<u64>,
+    of_file: Option<u64>,
+) -> Result<Vec<u64>, Failure> {
+    match list {
+        Some(list) => parse(list).map_err(|problem| Failure::Input(format!("--seeds: {problem}"))),
+        None => Ok(vec![one.or(of_file).unwrap_or(1)]),
+    }
+}
 
 /// The seeds of a range list, in the order given.
 ///
@@ -9,7 +23,7 @@ const MOST: usize = 1_000_000;
 ///
 /// Names the column (from 1) and the part that is wrong: not a number, backwards, step 0, a seed
 /// given twice.
-pub(crate) fn parse(text: &str) -> Result<Vec<u64>, String> {
+fn parse(text: &str) -> Result<Vec<u64>, String> {
     let mut seeds = Vec::new();
     let mut seen = std::collections::HashSet::new();
     let mut column = 1;

@@ -16,6 +16,7 @@ use std::sync::LazyLock;
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
 pub use value::Value;
+pub(crate) use value::nearest;
 
 /// Every knob of a leaf, in the order in which files show them.
 static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(LeafSpec::parameters);

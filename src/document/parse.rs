@@ -2,7 +2,7 @@
 
 use toml::de::{DeTable, DeValue};
 
-use super::value::{kind_in_words, nearest};
+use super::value::{LIKE_A_KEY, kind_in_words, nearest};
 use super::{Document, DocumentError, Entry, Value, parameters};
 use crate::parameter::{Kind, Parameter};
 
@@ -93,7 +93,7 @@ fn unknown(key: &str) -> String {
     // A last part that stands elsewhere is more likely the right word in the wrong group.
     let last = key.rsplit('.').next().unwrap_or(key);
     let same_ending = || keys().find(|k| k.rsplit('.').next() == Some(last));
-    match nearest(key, keys()).or_else(same_ending) {
+    match nearest(key, LIKE_A_KEY, keys()).or_else(same_ending) {
         Some(near) => format!("unknown key `{key}`; did you mean `{near}`?"),
         None => format!("unknown key `{key}`; `venation presets show beech` lists all keys"),
     }

@@ -72,7 +72,7 @@ impl Value {
                 if words.contains(&word.as_str()) {
                     return None;
                 }
-                let hint = match nearest(word, words.iter().copied()) {
+                let hint = match nearest(word, LIKE_A_KEY, words.iter().copied()) {
                     Some(near) => format!("; did you mean `{near}`?"),
                     None => format!("; it is one of: {}", words.join(", ")),
                 };
@@ -108,14 +108,19 @@ pub(super) fn kind_in_words(kind: &Kind) -> String {
     }
 }
 
-/// The candidate most like `word`, when one is like it at all.
-pub(super) fn nearest<'a>(
+/// Keys and words less alike than this are no slip of the finger.
+pub(super) const LIKE_A_KEY: f64 = 0.6;
+
+/// The candidate most like `word`, when one is more like it than `least` (0 nothing in common, 1 the
+/// same).
+pub(crate) fn nearest<'a>(
     word: &str,
+    least: f64,
     candidates: impl Iterator<Item = &'a str>,
 ) -> Option<&'a str> {
     candidates
         .map(|candidate| (strsim::normalized_damerau_levenshtein(word, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > 0.6)
+        .filter(|(likeness, _)| *likeness > least)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
 }

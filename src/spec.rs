@@ -1,5 +1,7 @@
 //! Everything a leaf is made from, as plain data: the stages' settings put together.
 
+mod output;
+
 use crate::growth::GrowthSpec;
 use crate::margin::MarginSpec;
 use crate::parameter::parameters;
@@ -8,16 +10,7 @@ use crate::texture::petiole::PetioleSpec;
 use crate::texture::pigment::ColourSpec;
 use crate::texture::relief::ReliefSpec;
 use crate::veins::VeinSpec;
-
-parameters! {
-    /// What is written of a leaf.
-    pub struct OutputSpec {
-        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or all, or none.
-        maps: text("basecolor,opacity,height,normal"),
-        /// Other files to write: some of obj, svg, json, graphml, csv; or all, or none.
-        formats: text("obj"),
-    }
-}
+pub use output::{CardShape, FormatKind, OutputSpec, Profile, SvgStyle};
 
 parameters! {
     /// A leaf, every value drawn.

@@ -7,6 +7,7 @@
 
 mod draw;
 mod parse;
+mod schema;
 mod value;
 mod write;
 
@@ -15,6 +16,7 @@ use std::sync::LazyLock;
 
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
+pub use schema::schema;
 pub use value::Value;
 pub(crate) use value::nearest;
 

@@ -4,6 +4,10 @@
 //! [`write::write_files`] puts named bytes into a folder. [`file_names`] tells beforehand what a run
 //! will write.
 
+pub mod card;
+mod drawing;
+pub mod dxf;
+pub mod glb;
 pub mod graph;
 pub mod graphml;
 pub mod image;
@@ -15,11 +19,12 @@ pub mod obj;
 pub mod outline;
 pub mod svg;
 pub mod tables;
+pub mod usda;
 pub mod write;
 
 use std::path::{Path, PathBuf};
 
-use crate::parameter::words;
+pub use crate::spec::FormatKind;
 pub use image::MapKind;
 pub use leaf_files::{LeafFiles, encode_leaf, file_names};
 
@@ -31,27 +36,6 @@ pub const SPEC_FILE: &str = "leaf.toml";
 
 /// The list of all files; written last, so where it is, the run was completed.
 pub const MANIFEST_FILE: &str = "manifest.json";
-
-words! {
-    /// A form of the leaf other than pictures.
-    pub enum FormatKind {
-        /// A textured card.
-        Obj = "obj",
-        /// Outline and veins as vectors.
-        Svg = "svg",
-        /// The vein graph.
-        Json = "json",
-        /// The vein graph for networkx, Gephi, igraph.
-        GraphMl = "graphml",
-        /// Tables of nodes, edges and areoles.
-        Csv = "csv",
-    }
-}
-
-impl FormatKind {
-    /// The formats that are written unless others are asked for.
-    pub const DEFAULT: &'static [Self] = &[Self::Obj];
-}
 
 /// Why files could not be written.
 #[derive(Debug, thiserror::Error)]

@@ -6,26 +6,49 @@
 //! plotter programs read the number, and fold a layer 0 into layer 1.
 //!
 //! The page is the square of the textures, so the drawing lies on them exactly. SVG's y runs down.
-//! It knows no stroke that tapers either: a vein is cut into pieces of one width each.
+//!
+//! What lines look like is a [`SvgStyle`]: for print veins have their widths; a plotter's pen has its
+//! own, so veins are single lines, each as long as it goes on; a laser tells its work by colour, red
+//! to cut through and blue to score, in hairlines.
 
 use std::fmt::Write as _;
 
 use glam::DVec2;
 
+use super::drawing::{Cut, number, order_name, pieces};
 use crate::margin::Margin;
+use crate::spec::SvgStyle;
 use crate::units::TextureFrame;
-use crate::veins::{NodeId, Venation};
+use crate::veins::Venation;
 
-/// A new piece of a vein begins where its radius has changed by this share: a step that the eye
-/// takes for a taper, without cutting veins to crumbs.
-const WIDTH_STEP: f64 = 0.1;
-
-/// Width of the outline (mm): a hairline that still shows on screen.
+/// Width of the outline in print (mm): a hairline that still shows on screen.
 const OUTLINE_WIDTH_MM: f64 = 0.1;
+
+/// Width of a plotter's lines (mm), that of a fine pen: only for the screen.
+const PEN_MM: f64 = 0.3;
+
+/// Laser programs take lines up to this width (mm) for paths to follow, wider ones for areas.
+const HAIRLINE_MM: f64 = 0.01;
+
+/// How lines are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing<'a> {
+    /// The title in the file.
+    pub title: &'a str,
+    /// What they are for.
+    pub style: SvgStyle,
+    /// Veins narrower than this are left out (mm).
+    pub least_width_mm: f64,
+}
 
 /// The drawing of a leaf.
 #[must_use]
-pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFrame) -> String {
+pub fn svg(
+    drawing: &Drawing<'_>,
+    margin: &Margin,
+    venation: &Venation,
+    frame: &TextureFrame,
+) -> String {
     let page = Page { frame };
     let side = number(frame.side_mm);
     let mut svg = format!(
@@ -34,25 +57,37 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
          xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
          width=\"{side}mm\" height=\"{side}mm\" viewBox=\"0 0 {side} {side}\" fill=\"none\" \
          stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>\n",
-        escaped(title)
+        escaped(drawing.title)
     );
-    open_layer(&mut svg, 1, "outline", &format!(" stroke-width=\"{OUTLINE_WIDTH_MM}\""));
+    let (cut, score, outline_mm) = match drawing.style {
+        SvgStyle::Print => ("black", "black", OUTLINE_WIDTH_MM),
+        SvgStyle::Plotter => ("black", "black", PEN_MM),
+        SvgStyle::Laser => ("#ff0000", "#0000ff", HAIRLINE_MM),
+    };
+    let by_width = drawing.style == SvgStyle::Print;
+    open_layer(&mut svg, 1, "outline", cut, Some(outline_mm));
     let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(margin.outline()));
     for cut in margin.cuts() {
         let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
     }
     svg.push_str("</g>\n");
 
-    let pieces = pieces(venation);
+    let pieces = pieces(venation, Cut { by_width, least_width_mm: drawing.least_width_mm });
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     for order in 1..=orders {
-        open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");
+        let width = (!by_width).then_some(outline_mm);
+        open_layer(&mut svg, usize::from(order) + 1, &order_name(order), score, width);
         for piece in pieces.iter().filter(|piece| piece.order == order) {
             let points = page.points(&piece.points);
-            if points.contains(' ') {
-                let width = number(2.0 * piece.radius);
-                let _ = writeln!(svg, "<polyline stroke-width=\"{width}\" points=\"{points}\"/>");
+            if !points.contains(' ') {
+                continue;
             }
+            let _ = if by_width {
+                let width = number(2.0 * piece.radius);
+                writeln!(svg, "<polyline stroke-width=\"{width}\" points=\"{points}\"/>")
+            } else {
+                writeln!(svg, "<polyline points=\"{points}\"/>")
+            };
         }
         svg.push_str("</g>\n");
     }
@@ -60,79 +95,13 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
     svg
 }
 
-fn open_layer(svg: &mut String, number: usize, name: &str, style: &str) {
+fn open_layer(svg: &mut String, number: usize, name: &str, colour: &str, width: Option<f64>) {
+    let width = width.map_or(String::new(), |width| format!(" stroke-width=\"{width}\""));
     let _ = writeln!(
         svg,
         "<g id=\"layer{number}\" inkscape:groupmode=\"layer\" \
-         inkscape:label=\"{number} {name}\" stroke=\"black\"{style}>"
+         inkscape:label=\"{number} {name}\" stroke=\"{colour}\"{width}>"
     );
-}
-
-fn order_name(order: u8) -> String {
-    match order {
-        1 => "primary".into(),
-        2 => "secondary".into(),
-        3 => "tertiary".into(),
-        4 => "quaternary".into(),
-        5 => "quinternary".into(),
-        _ => format!("order {order}"),
-    }
-}
-
-/// A stretch of a vein of one order and (nearly) one width.
-#[derive(Debug)]
-struct Piece {
-    order: u8,
-    radius: f64,
-    points: Vec<DVec2>,
-}
-
-/// Every edge of the pattern, once, in pieces as long as order and width allow.
-fn pieces(venation: &Venation) -> Vec<Piece> {
-    let graph = venation.graph();
-    let (radii, orders) = (venation.radii(), venation.orders());
-    let order_of = |node: NodeId| orders[node as usize].max(1);
-    let radius_of = |node: NodeId| radii[node as usize];
-    let position_of = |node: NodeId| graph.positions()[node as usize];
-
-    // The child that goes on with its parent's vein: of the same order, the widest, the eldest.
-    let mut heir: Vec<Option<NodeId>> = vec![None; graph.len()];
-    for (parent, child) in graph.edges() {
-        let wider = heir[parent as usize].is_none_or(|other| radius_of(child) > radius_of(other));
-        if order_of(child) == order_of(parent) && wider {
-            heir[parent as usize] = Some(child);
-        }
-    }
-
-    let mut pieces = Vec::new();
-    for (parent, child) in graph.edges() {
-        // A vein starts at a root, or where a child is no heir.
-        if heir[parent as usize] == Some(child) && graph.parent(parent).is_some() {
-            continue;
-        }
-        let start = |parent: NodeId, child: NodeId| Piece {
-            order: order_of(child),
-            radius: radius_of(child),
-            points: vec![position_of(parent), position_of(child)],
-        };
-        let mut piece = start(parent, child);
-        let mut node = child;
-        while let Some(next) = heir[node as usize] {
-            if (radius_of(next) - piece.radius).abs() > WIDTH_STEP * piece.radius {
-                pieces.push(std::mem::replace(&mut piece, start(node, next)));
-            } else {
-                piece.points.push(position_of(next));
-            }
-            node = next;
-        }
-        pieces.push(piece);
-    }
-    pieces.extend(graph.joins().iter().map(|&(a, b)| Piece {
-        order: order_of(a).max(order_of(b)),
-        radius: radius_of(a).min(radius_of(b)),
-        points: vec![position_of(a), position_of(b)],
-    }));
-    pieces
 }
 
 /// From leaf space to the page.
@@ -156,13 +125,6 @@ impl Page<'_> {
     fn path(&self, points: &[DVec2]) -> String {
         format!("M {}", self.points(points))
     }
-}
-
-/// To a tenth of a micrometre, without trailing zeros.
-fn number(value: f64) -> String {
-    let printed = format!("{value:.4}");
-    let printed = printed.trim_end_matches('0').trim_end_matches('.');
-    if printed == "-0" { "0".into() } else { printed.into() }
 }
 
 /// Text that XML takes as text.

@@ -1,0 +1,254 @@
+//! What a batch has made: one line a leaf, one file a shard, and putting the shards together.
+//!
+//! A shard writes `manifest.0003-of-0016.jsonl` and no other shard touches it, so many machines
+//! can work in one folder without a lock. [`merge`] makes of them the `manifest.jsonl` that one
+//! machine alone would have written, byte for byte.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::manifest::Manifest;
+
+/// The manifest of a batch that is not cut into shards.
+pub const BATCH_FILE: &str = "manifest.jsonl";
+
+/// One shard of a batch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which one, from 0.
+    pub index: usize,
+    /// Of how many.
+    pub count: usize,
+}
+
+impl Shard {
+    /// Reads `i/n`. Shards may be counted from 0 or from 1: `0/n` and `n/n` are the same one, so that
+    /// either way of counting covers everything once.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, in words.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        const MOST: usize = 9999;
+        let number = |part: &str| part.trim().parse::<usize>().ok();
+        let (index, count) = text
+            .split_once('/')
+            .and_then(|(index, count)| Some((number(index)?, number(count)?)))
+            .ok_or_else(|| format!("`{text}` is not i/n, like 3/16"))?;
+        if count == 0 || count > MOST {
+            return Err(format!("{count} shards: there are 1 to {MOST}"));
+        }
+        if index > count {
+            return Err(format!("shard {index} of {count}: i is at most n"));
+        }
+        Ok(Self { index: index % count, count })
+    }
+
+    /// Whether the item at this place of the whole list is this shard's.
+    #[must_use]
+    pub const fn holds(self, place: usize) -> bool {
+        place % self.count == self.index
+    }
+
+    /// The name of its manifest.
+    #[must_use]
+    pub fn file(self) -> String {
+        format!("manifest.{:04}-of-{:04}.jsonl", self.index, self.count)
+    }
+
+    /// The shard whose manifest has this name.
+    fn of_file(name: &str) -> Option<Self> {
+        let (index, count) =
+            name.strip_prefix("manifest.")?.strip_suffix(".jsonl")?.split_once("-of-")?;
+        let shard = Self { index: index.parse().ok()?, count: count.parse().ok()? };
+        (shard.index < shard.count && shard.file() == name).then_some(shard)
+    }
+}
+
+/// A leaf of a batch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BatchLine {
+    /// Its place in the list of seeds, from 0.
+    pub place: usize,
+    /// Its seed.
+    pub seed: u64,
+    /// Its name.
+    pub name: String,
+    /// Its folder, relative to the manifest.
+    pub folder: String,
+    /// Of its settings: two leaves with the same are the same.
+    pub settings_sha256: String,
+    /// Why there is none.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub problem: Option<String>,
+    /// Its files.
+    pub files: Vec<BatchFile>,
+}
+
+/// A file of a leaf of a batch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BatchFile {
+    /// Relative to the leaf's folder, with `/`.
+    pub path: String,
+    /// Length.
+    pub bytes: usize,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+}
+
+impl BatchLine {
+    /// The line of a leaf that is there.
+    #[must_use]
+    pub fn of(place: usize, folder: &str, manifest: &Manifest) -> Self {
+        let files = manifest.files.iter().map(|file| BatchFile {
+            path: file.path.clone(),
+            bytes: file.bytes,
+            sha256: file.sha256.clone(),
+        });
+        Self {
+            place,
+            seed: manifest.seed,
+            name: manifest.name.clone(),
+            folder: folder.to_owned(),
+            settings_sha256: manifest.settings_sha256.clone(),
+            problem: None,
+            files: files.collect(),
+        }
+    }
+}
+
+/// The text of a manifest: a line of JSON for every leaf, in the order of the seeds.
+#[must_use]
+pub fn to_jsonl(lines: &[BatchLine]) -> String {
+    lines
+        .iter()
+        .map(|line| serde_json::to_string(line).expect("plain data has a form in JSON") + "\n")
+        .collect()
+}
+
+/// Reads a manifest.
+fn read(path: &Path) -> Result<Vec<BatchLine>, String> {
+    let fail = |problem: String| format!("{}{problem}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|error| fail(format!(": {error}")))?;
+    text.lines()
+        .enumerate()
+        .map(|(i, line)| {
+            serde_json::from_str(line).map_err(|error| fail(format!(":{}: {error}", i + 1)))
+        })
+        .collect()
+}
+
+/// The manifests of shards in `paths`: files as they are, of folders those that lie in them.
+///
+/// # Errors
+///
+/// A folder that cannot be read or holds none, in words.
+pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let entries =
+            std::fs::read_dir(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let mut found: Vec<PathBuf> = entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| {
+                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+                name.is_some_and(|name| Shard::of_file(&name).is_some())
+            })
+            .collect();
+        if found.is_empty() {
+            return Err(format!("{}: holds no manifest.I-of-N.jsonl", path.display()));
+        }
+        found.sort();
+        files.extend(found);
+    }
+    Ok(files)
+}
+
+/// One manifest of many: every leaf once, in the order of the seeds. A leaf that several shards made
+/// alike is one leaf.
+///
+/// # Errors
+///
+/// A manifest that cannot be read; shards of different batches; a shard that is missing; two that
+/// disagree about a leaf. In words that name the files.
+pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
+    let mut merged: BTreeMap<usize, (BatchLine, &Path)> = BTreeMap::new();
+    let mut shards: Vec<(Shard, &Path)> = Vec::new();
+    for file in files {
+        let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
+        if let Some(shard) = name.and_then(|name| Shard::of_file(&name)) {
+            shards.push((shard, file));
+        }
+        for line in read(file)? {
+            let place = line.place;
+            if let Some((other, from)) = merged.get(&place)
+                && *other != line
+            {
+                return Err(format!(
+                    "{} and {} disagree about leaf {place} (seed {}): they are of different runs",
+                    from.display(),
+                    file.display(),
+                    line.seed
+                ));
+            }
+            merged.insert(place, (line, file));
+        }
+    }
+    if let Some((first, path)) = shards.first() {
+        if let Some((_, other)) = shards.iter().find(|(shard, _)| shard.count != first.count) {
+            return Err(format!(
+                "{} and {} are shards of different batches",
+                path.display(),
+                other.display()
+            ));
+        }
+        let missing: Vec<String> = (0..first.count)
+            .filter(|index| !shards.iter().any(|(shard, _)| shard.index == *index))
+            .map(|index| Shard { index, count: first.count }.file())
+            .collect();
+        if !missing.is_empty() {
+            return Err(format!("{} missing", super::listed(&missing)));
+        }
+    }
+    if let Some(gap) = merged.keys().enumerate().find(|(i, place)| i != *place).map(|(i, _)| i) {
+        return Err(format!("leaf {gap} of the list is in none of the manifests"));
+    }
+    Ok(merged.into_values().map(|(line, _)| line).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn either_way_of_counting_covers_everything_once() {
+        for count in [1, 2, 3, 16] {
+            for first in [0, 1] {
+                let shards: Vec<Shard> = (first..count + first)
+                    .map(|i| Shard::parse(&format!("{i}/{count}")).unwrap())
+                    .collect();
+                for place in 0..50 {
+                    assert_eq!(shards.iter().filter(|shard| shard.holds(place)).count(), 1);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_shard_reads_back_from_its_file() {
+        let shard = Shard { index: 3, count: 16 };
+        assert_eq!(Shard::of_file(&shard.file()), Some(shard));
+        for name in ["manifest.jsonl", "manifest.16-of-16.jsonl", "manifest.3-of-16.jsonl"] {
+            assert_eq!(Shard::of_file(name), None);
+        }
+        for text in ["", "3", "3/0", "4/3", "-1/3", "a/b", "1/100000"] {
+            assert!(Shard::parse(text).is_err(), "{text}");
+        }
+    }
+}

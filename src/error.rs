@@ -16,6 +16,9 @@ pub enum Error {
     /// Its veins could not grow.
     #[error(transparent)]
     Veins(#[from] crate::veins::VeinError),
+    /// It is not known what to write of it.
+    #[error(transparent)]
+    Output(#[from] crate::spec::OutputError),
     /// It could not be painted.
     #[error(transparent)]
     Texture(#[from] crate::texture::TextureError),

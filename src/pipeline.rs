@@ -59,6 +59,7 @@ pub fn paint(
         petiole: &spec.petiole,
         colour: &spec.colour,
         relief: &spec.relief,
+        maps: spec.output.resolve()?.planes(),
         // A tenth of the auxin spawn rate (Foster, appendix B.3).
         default_speckles: (spec.veins.spawn_rate / 10.0).round() as u64,
     };

@@ -10,7 +10,7 @@ use crate::texture::petiole::PetioleSpec;
 use crate::texture::pigment::ColourSpec;
 use crate::texture::relief::ReliefSpec;
 use crate::veins::VeinSpec;
-pub use output::{CardShape, FormatKind, OutputSpec, Profile, SvgStyle};
+pub use output::{CardShape, FormatKind, Output, OutputError, OutputSpec, Profile, SvgStyle};
 
 parameters! {
     /// A leaf, every value drawn.

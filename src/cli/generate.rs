@@ -1,19 +1,23 @@
 //! `venation generate`: leaves into folders.
 
+mod job;
+
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::Serialize;
-use venation::document::{Comments, Document, Value};
-use venation::io::write::{Overwrite, collisions, write_files};
-use venation::io::{self, FormatKind, LeafFiles, MapKind};
+use venation::document::{Document, Value};
+use venation::io::batch::{self, Shard};
+use venation::io::write::{Overwrite, write_files};
+use venation::io::{self, LeafFiles};
 use venation::pipeline;
 use venation::seed::Seed;
-use venation::spec::LeafSpec;
 
-use super::leaf_args::{self, LeafArgs};
-use super::progress::Bar;
+use super::leaf_args::LeafArgs;
+use super::output_args::OutputArgs;
+use super::progress::{Bar, Counter, ProgressWord};
 use super::{Context, Failure, seeds};
+use job::Job;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -24,11 +28,17 @@ Examples:
   venation generate beech --outline scan.jpg --length-mm 72       a scanned leaf's outline
   venation generate beech --outline drawing.png --root 310,540    a drawing, petiole given in pixels
   venation generate linden --growth marginal --set colour.type=from-edges --set colour.spread_mm=4..8
+  venation generate maple --format glb --card outline             one file for engines
+  venation generate oak --profile unity-hdrp --mips -o oak        names and packing of Unity's HDRP
+  venation generate oak --format svg,dxf --svg-style laser --maps none
+  venation generate oak --seeds 1-1000 -o oaks --shard 3/16       one of sixteen machines
   venation generate out/leaf.toml -o again                        the same leaf, byte for byte
 
 Settings: every key of `venation presets show beech` takes a value or a range; each leaf draws its own.
-A folder holds NAME_BaseColor.png, NAME_Opacity.png, NAME_Height.png (16 bit), NAME_Normal.png (OpenGL),
-the same of the underside in back/, NAME.obj and NAME.mtl, leaf.toml and manifest.json.")]
+A folder holds NAME_BaseColor.png, _Opacity, _Normal (OpenGL), _Height (16 bit), _Roughness,
+_AmbientOcclusion, _ORM, _Translucency, _Thickness, _VeinMask and _VeinOrder, the same of the underside
+in back/, NAME.obj and NAME.mtl, leaf.toml and manifest.json. A batch has a manifest.jsonl, a shard
+manifest.000I-of-000N.jsonl; `venation merge` makes one of them.")]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
@@ -38,11 +48,13 @@ pub(crate) struct Args {
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
-    /// Maps to write: basecolor, opacity, height, normal, bump; all or none [default: the file's, else
-    /// basecolor,opacity,height,normal].
-    #[arg(long, value_name = "LIST")]
-    maps: Option<String>,
-    /// Other files to write: obj, svg, json, graphml, csv; all or none [default: the file's, else obj].
+    /// Make only the leaves of shard I of N; count from 0 or from 1.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    #[command(flatten)]
+    output: OutputArgs,
+    /// Other files to write: obj, glb, usda, svg, dxf, json, graphml, csv; all or none [default: the
+    /// file's, else obj].
     #[arg(long, value_name = "LIST")]
     format: Option<String>,
     /// Folder to write into [default: the leaf's name].
@@ -54,25 +66,19 @@ pub(crate) struct Args {
     /// Report on stdout as one JSON document.
     #[arg(long)]
     json: bool,
+    /// Only list the files that would be written.
+    #[arg(short = 'n', long)]
+    dry_run: bool,
+    /// What tells of progress: auto is a bar on stderr where a person is watching; openjd prints the lines
+    /// that Open Job Description reads, on stdout.
+    #[arg(long, value_name = "HOW", value_enum, default_value = "auto")]
+    progress: ProgressWord,
     /// Overwrite files of an earlier run.
     #[arg(long, conflicts_with = "skip_existing")]
     force: bool,
     /// Leave leaves alone that are there already with the same settings.
     #[arg(long)]
     skip_existing: bool,
-}
-
-/// One leaf to make.
-struct Job {
-    seed: u64,
-    spec: LeafSpec,
-    folder: PathBuf,
-    /// The settings as they will stand in leaf.toml.
-    toml: String,
-    /// The maps to write.
-    maps: Vec<MapKind>,
-    /// The other files to write.
-    formats: Vec<FormatKind>,
 }
 
 /// What became of a leaf.
@@ -91,72 +97,104 @@ struct Made {
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
     let mut document = args.leaf.document(context)?;
-    if let Some(maps) = &args.maps {
-        document.insert("output.maps", Value::Text(maps.clone()), "--maps");
-    }
+    args.output.apply(&mut document)?;
     if let Some(formats) = &args.format {
         document.insert("output.formats", Value::Text(formats.clone()), "--format");
     }
-    let jobs = jobs(args, &document)?;
+    let batch = Batch::new(args, &document)?;
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
     // Nothing is grown before it is known that everything may be written.
     let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
-        jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
+        batch.jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
     } else {
-        jobs.iter().map(|job| (job, overwrite)).collect()
+        batch.jobs.iter().map(|job| (job, overwrite)).collect()
     };
     for (job, overwrite) in &todo {
-        let names = io::file_names(&job.spec.name, &job.maps, &job.formats);
-        let files = collisions(&job.folder, names.iter().map(String::as_str));
+        let files = job.collisions();
         if *overwrite == Overwrite::Refuse && !files.is_empty() {
             let folder = job.folder.clone();
             return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
         }
     }
-    let pool = pool(args.threads)?;
-    let single = jobs.len() == 1;
-    let quiet = context.quiet;
-    let results: Vec<Result<Made, Failure>> = pool.install(|| {
-        todo.par_iter().map(|(job, overwrite)| make(job, *overwrite, quiet || !single)).collect()
+    if args.dry_run {
+        return plan(args, context, &batch, &todo);
+    }
+    let counter = Counter::new(args.progress, context.quiet, todo.len());
+    let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
+    let results: Vec<Result<Made, Failure>> = pool(args.threads)?.install(|| {
+        let results = todo.par_iter().map(|(job, overwrite)| {
+            let result = make(job, *overwrite, bars);
+            counter.one_more();
+            result
+        });
+        results.collect()
     });
-    report(args, context, &jobs, &todo, results)
+    drop(counter);
+    report(args, context, &batch, &todo, results)
 }
 
-fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
-    let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
-    let single = seeds.len() == 1;
-    let jobs = seeds.into_iter().map(|seed| {
-        let spec = leaf_args::resolve(document, seed)?;
-        let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
-        let folder = if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
-        let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
-        let maps = words("output.maps", &spec.output.maps, MapKind::ALL, MapKind::word)?;
-        let all = FormatKind::ALL;
-        let formats = words("output.formats", &spec.output.formats, all, FormatKind::word)?;
-        Ok(Job { seed, spec, folder, toml, maps, formats })
-    });
-    jobs.collect()
+/// The leaves of a run.
+struct Batch {
+    jobs: Vec<Job>,
+    /// Where its manifest goes, if it has one.
+    manifest: Option<PathBuf>,
 }
 
-impl Job {
-    /// Whether an earlier run finished this very leaf (the manifest is written last) and every
-    /// file that is wanted is there.
-    fn is_done(&self) -> bool {
-        let names = io::file_names(&self.spec.name, &self.maps, &self.formats);
-        self.same_settings() && names.iter().all(|name| self.folder.join(name).is_file())
+impl Batch {
+    fn new(args: &Args, document: &Document) -> Result<Self, Failure> {
+        let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
+        let single = args.seeds.is_none() && args.shard.is_none();
+        let alone = seeds.len() == 1;
+        let jobs: Vec<Job> = seeds
+            .into_iter()
+            .enumerate()
+            .filter(|&(place, _)| args.shard.is_none_or(|shard| shard.holds(place)))
+            .map(|(_, seed)| Job::new(document, seed, args.out.as_ref(), alone))
+            .collect::<Result<_, _>>()?;
+        let file = args.shard.map_or_else(|| batch::BATCH_FILE.to_owned(), Shard::file);
+        let root = match (&args.out, jobs.first()) {
+            (Some(root), _) => Some(root.clone()),
+            (None, Some(job)) => Some(PathBuf::from(&job.spec.name)),
+            // A shard without leaves and without a folder has nowhere to say so.
+            (None, None) => None,
+        };
+        let manifest = root.filter(|_| !single).map(|root| root.join(file));
+        Ok(Self { jobs, manifest })
     }
 
-    /// Whether the leaf there is this one, whatever was written of it.
-    fn same_settings(&self) -> bool {
-        let leaf = |text: &str| text.split("\n[output]").next().map(str::to_owned);
-        std::fs::read_to_string(self.folder.join("leaf.toml"))
-            .is_ok_and(|text| leaf(&text) == leaf(&self.toml))
+    /// Writes the batch's manifest: what is there now of every leaf.
+    fn seal(&self, problems: &[(u64, String)]) -> Result<(), Failure> {
+        let Some(path) = &self.manifest else { return Ok(()) };
+        let problem = |seed: u64| {
+            problems.iter().find(|(of, _)| *of == seed).map(|(_, problem)| problem.clone())
+        };
+        let mut lines: Vec<_> = self.jobs.iter().map(|job| job.line(problem(job.seed))).collect();
+        lines.extend(batch::others(path, &lines).map_err(Failure::Input)?);
+        super::save(path, batch::to_jsonl(&lines).into_bytes())
     }
+}
 
-    /// A killed run of this very leaf may be completed over; other people's files may not.
-    fn resume(&self) -> Overwrite {
-        if self.same_settings() { Overwrite::Force } else { Overwrite::Refuse }
-    }
+/// Says what a run would write and what it would leave alone.
+fn plan(
+    args: &Args,
+    context: &mut Context<'_>,
+    batch: &Batch,
+    todo: &[(&Job, Overwrite)],
+) -> Result<(), Failure> {
+    let planned: Vec<Made> = todo
+        .iter()
+        .map(|(job, _)| Made {
+            seed: job.seed,
+            name: job.spec.name.clone(),
+            folder: shown(&job.folder),
+            status: "planned",
+            problem: None,
+            files: job.names(),
+            nodes: 0,
+            unreached_sources: 0,
+        })
+        .collect();
+    tell(args, context, batch, &planned, batch.jobs.len() - todo.len())
 }
 
 fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
@@ -187,8 +225,7 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
         spec_toml: &job.toml,
         specularity: job.spec.relief.specularity,
         roughness: job.spec.relief.roughness,
-        maps: &job.maps,
-        formats: &job.formats,
+        output: &job.output,
     });
     write_files(&job.folder, &files, overwrite).map_err(|error| write_failure(&error))?;
     Ok(Made {
@@ -212,27 +249,6 @@ fn write_failure(error: &io::Error) -> Failure {
     }
 }
 
-/// The items of a comma-separated list of words, `all` of them or `none`.
-fn words<T: Copy>(
-    key: &str,
-    list: &str,
-    all: &[T],
-    word: fn(T) -> &'static str,
-) -> Result<Vec<T>, Failure> {
-    match list.trim() {
-        "none" => return Ok(Vec::new()),
-        "all" => return Ok(all.to_vec()),
-        _ => {}
-    }
-    let find = |item: &str| {
-        all.iter().copied().find(|&kind| word(kind) == item).ok_or_else(|| {
-            let known: Vec<&str> = all.iter().map(|&kind| word(kind)).collect();
-            Failure::Input(format!("{key}: `{item}` is none of {}", known.join(", ")))
-        })
-    };
-    list.split(',').map(|item| find(item.trim())).collect()
-}
-
 fn shown(path: &Path) -> String {
     path.display().to_string()
 }
@@ -240,21 +256,23 @@ fn shown(path: &Path) -> String {
 fn report(
     args: &Args,
     context: &mut Context<'_>,
-    jobs: &[Job],
+    batch: &Batch,
     todo: &[(&Job, Overwrite)],
     results: Vec<Result<Made, Failure>>,
 ) -> Result<(), Failure> {
-    let (all, skipped) = (todo.len(), jobs.len() - todo.len());
+    let (all, skipped) = (todo.len(), batch.jobs.len() - todo.len());
     let mut list = Vec::new();
     let mut failures = Vec::new();
+    let mut problems = Vec::new();
     for ((job, _), result) in todo.iter().zip(results) {
         match result {
             Ok(made) => list.push(made),
             Err(failure) => {
                 let problem = failure.message().unwrap_or_default().to_owned();
-                if jobs.len() > 1 {
+                if batch.jobs.len() > 1 {
                     super::complain(&format!("seed {}: {problem}", job.seed));
                 }
+                problems.push((job.seed, problem.clone()));
                 list.push(Made {
                     seed: job.seed,
                     name: job.spec.name.clone(),
@@ -269,25 +287,45 @@ fn report(
             }
         }
     }
-    if args.json {
-        let version = env!("CARGO_PKG_VERSION");
-        let document =
-            serde_json::json!({ "version": version, "skipped": skipped, "leaves": list });
-        let text = serde_json::to_string_pretty(&document).expect("plain data");
-        writeln!(context.stdout, "{text}")?;
-    } else {
-        for made in &list {
-            for file in &made.files {
-                writeln!(context.stdout, "{}", Path::new(&made.folder).join(file).display())?;
-            }
-        }
+    if failures.len() < all || all == 0 {
+        batch.seal(&problems)?;
     }
+    tell(args, context, batch, &list, skipped)?;
     if skipped > 0 {
-        context.say(&format!("{skipped} of {} leaves were there already", jobs.len()));
+        context.say(&format!("{skipped} of {} leaves were there already", batch.jobs.len()));
     }
     match failures.len() {
         0 => Ok(()),
-        1 if jobs.len() == 1 => Err(failures.remove(0)),
+        1 if batch.jobs.len() == 1 => Err(failures.remove(0)),
         failed => Err(Failure::Partial(format!("{failed} of {all} leaves failed"))),
     }
+}
+
+/// The files made or planned, on stdout.
+fn tell(
+    args: &Args,
+    context: &mut Context<'_>,
+    batch: &Batch,
+    list: &[Made],
+    skipped: usize,
+) -> Result<(), Failure> {
+    let manifest = batch.manifest.as_deref().map(shown);
+    if args.json {
+        let version = env!("CARGO_PKG_VERSION");
+        let document = serde_json::json!({
+            "version": version, "skipped": skipped, "leaves": list, "manifest": manifest
+        });
+        let text = serde_json::to_string_pretty(&document).expect("plain data");
+        writeln!(context.stdout, "{text}")?;
+        return Ok(());
+    }
+    for made in list {
+        for file in &made.files {
+            writeln!(context.stdout, "{}", Path::new(&made.folder).join(file).display())?;
+        }
+    }
+    if let Some(manifest) = manifest {
+        writeln!(context.stdout, "{manifest}")?;
+    }
+    Ok(())
 }

@@ -8,9 +8,12 @@ mod compare;
 mod generate;
 mod inspect;
 mod leaf_args;
+mod merge;
+mod output_args;
 mod presets;
 mod progress;
 mod seeds;
+mod shell;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -149,6 +152,14 @@ enum Command {
     Bench(bench::Args),
     /// List the leaves that come with venation, or show one as complete TOML.
     Presets(presets::Args),
+    /// Put the manifests of the shards of a batch together.
+    Merge(merge::Args),
+    /// Print the JSON Schema of leaf files, for editors.
+    Schema,
+    /// Print a completion script for a shell.
+    Completions(shell::CompletionArgs),
+    /// Print the manual page.
+    Man(shell::ManArgs),
 }
 
 /// Runs the program on the process's arguments.
@@ -164,7 +175,8 @@ pub(crate) fn run() -> Result<(), Failure> {
             return Err(Failure::Input(one_line(&error.to_string())));
         }
     };
-    let mut stdout = std::io::stdout().lock();
+    // Not locked: batches tell of their progress from other threads.
+    let mut stdout = std::io::stdout();
     let mut context = Context { stdout: &mut stdout, quiet: cli.quiet };
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
@@ -172,6 +184,14 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),
+        Command::Merge(args) => merge::run(args, &mut context),
+        Command::Schema => {
+            let schema = serde_json::to_string_pretty(&venation::document::schema());
+            writeln!(context.stdout, "{}", schema.expect("plain data"))?;
+            Ok(())
+        }
+        Command::Completions(args) => shell::completions::<Cli>(args, &mut context),
+        Command::Man(args) => shell::man::<Cli>(args, &mut context),
     }
 }
 

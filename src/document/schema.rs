@@ -3,7 +3,7 @@
 //! Draft 2020-12, from the same list of parameters that files are checked against: limits, words,
 //! defaults and meanings cannot differ. TOML and JSON share their data model, so the schema fits both.
 
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Value as Json, json};
 
 use super::{Value, parameters, value};
 use crate::parameter::{Kind, Parameter};
@@ -134,7 +134,7 @@ mod tests {
             }
         }
         assert_eq!(schema["additionalProperties"], json!(false));
-        let groups: &Map<String, Json> = schema["properties"].as_object().expect("groups");
+        let groups = schema["properties"].as_object().expect("groups");
         assert!(groups["veins"]["additionalProperties"] == json!(false));
     }
 }

@@ -70,8 +70,6 @@ impl Shard {
 /// A leaf of a batch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BatchLine {
-    /// Its place in the list of seeds, from 0.
-    pub place: usize,
     /// Its seed.
     pub seed: u64,
     /// Its name.
@@ -101,14 +99,13 @@ pub struct BatchFile {
 impl BatchLine {
     /// The line of a leaf that is there.
     #[must_use]
-    pub fn of(place: usize, folder: &str, manifest: &Manifest) -> Self {
+    pub fn of(folder: &str, manifest: &Manifest) -> Self {
         let files = manifest.files.iter().map(|file| BatchFile {
             path: file.path.clone(),
             bytes: file.bytes,
             sha256: file.sha256.clone(),
         });
         Self {
-            place,
             seed: manifest.seed,
             name: manifest.name.clone(),
             folder: folder.to_owned(),
@@ -119,13 +116,30 @@ impl BatchLine {
     }
 }
 
-/// The text of a manifest: a line of JSON for every leaf, in the order of the seeds.
+/// The text of a manifest: a line of JSON for every leaf, by name and seed.
 #[must_use]
 pub fn to_jsonl(lines: &[BatchLine]) -> String {
-    lines
-        .iter()
+    let mut ordered: Vec<&BatchLine> = lines.iter().collect();
+    ordered.sort_by_key(|line| (&line.name, line.seed, &line.folder));
+    ordered
+        .into_iter()
         .map(|line| serde_json::to_string(line).expect("plain data has a form in JSON") + "\n")
         .collect()
+}
+
+/// The lines of leaves that an earlier run left in a folder and that are not made anew: a manifest tells
+/// of all that is there.
+///
+/// # Errors
+///
+/// A manifest that cannot be read, in words.
+pub fn others(path: &Path, made: &[BatchLine]) -> Result<Vec<BatchLine>, String> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let mut lines = read(path)?;
+    lines.retain(|line| made.iter().all(|own| own.folder != line.folder));
+    Ok(lines)
 }
 
 /// Reads a manifest.
@@ -170,15 +184,14 @@ pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// One manifest of many: every leaf once, in the order of the seeds. A leaf that several shards made
-/// alike is one leaf.
+/// One manifest of many: every leaf once. A leaf that several shards made alike is one leaf.
 ///
 /// # Errors
 ///
 /// A manifest that cannot be read; shards of different batches; a shard that is missing; two that
 /// disagree about a leaf. In words that name the files.
 pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
-    let mut merged: BTreeMap<usize, (BatchLine, &Path)> = BTreeMap::new();
+    let mut merged: BTreeMap<String, (BatchLine, &Path)> = BTreeMap::new();
     let mut shards: Vec<(Shard, &Path)> = Vec::new();
     for file in files {
         let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -186,18 +199,17 @@ pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
             shards.push((shard, file));
         }
         for line in read(file)? {
-            let place = line.place;
-            if let Some((other, from)) = merged.get(&place)
+            if let Some((other, from)) = merged.get(&line.folder)
                 && *other != line
             {
                 return Err(format!(
-                    "{} and {} disagree about leaf {place} (seed {}): they are of different runs",
+                    "{} and {} disagree about {}: they are of different runs",
                     from.display(),
                     file.display(),
-                    line.seed
+                    line.folder
                 ));
             }
-            merged.insert(place, (line, file));
+            merged.insert(line.folder.clone(), (line, file));
         }
     }
     if let Some((first, path)) = shards.first() {
@@ -215,9 +227,6 @@ pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
         if !missing.is_empty() {
             return Err(format!("{} missing", super::listed(&missing)));
         }
-    }
-    if let Some(gap) = merged.keys().enumerate().find(|(i, place)| i != *place).map(|(i, _)| i) {
-        return Err(format!("leaf {gap} of the list is in none of the manifests"));
     }
     Ok(merged.into_values().map(|(line, _)| line).collect())
 }

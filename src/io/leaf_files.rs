@@ -3,14 +3,17 @@
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::image::{Caption, MapKind};
+use super::card::{Card, Sheet, Side};
 use super::manifest::{FileRecord, Manifest, SideMapping};
+use super::map_files::{self, MapFile, Pictures, Texts};
 use super::tables::Table;
 use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
-use super::{file_stem, graph, graphml, obj, svg};
+use super::{dxf, file_stem, glb, graph, graphml, obj, svg, usda};
 use crate::margin::Margin;
 use crate::seed::Seed;
+use crate::spec::Output;
 use crate::texture::TextureSet;
+use crate::texture::map::MapKind;
 use crate::veins::Venation;
 
 /// A leaf and how it is to be written.
@@ -34,16 +37,14 @@ pub struct LeafFiles<'a> {
     pub specularity: f64,
     /// Roughness of the surface, 0–1.
     pub roughness: f64,
-    /// The maps to write of each side.
-    pub maps: &'a [MapKind],
-    /// The other forms to write.
-    pub formats: &'a [FormatKind],
+    /// What to write.
+    pub output: &'a Output,
 }
 
-/// What [`encode_leaf`] will make of a leaf of this name, in the same order.
+/// What [`encode_leaf`] will make of a leaf of this name and size (pixels), in the same order.
 #[must_use]
-pub fn file_names(name: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<String> {
-    let entries = entries(&file_stem(name), maps, formats);
+pub fn file_names(name: &str, size_px: usize, output: &Output) -> Vec<String> {
+    let entries = entries(name, size_px, output);
     entries.into_iter().map(|(path, _)| path).chain([MANIFEST_FILE.to_owned()]).collect()
 }
 
@@ -53,12 +54,14 @@ pub fn file_names(name: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<S
 /// manifest last.
 #[must_use]
 pub fn encode_leaf(leaf: &LeafFiles<'_>) -> Vec<(String, Vec<u8>)> {
-    let stem = file_stem(leaf.name);
-    let encoded: Vec<((String, Vec<u8>), FileRecord)> = entries(&stem, leaf.maps, leaf.formats)
+    let sheet = Sheet::of(leaf.output.card, &leaf.textures.front.base_colour);
+    let work = Work { leaf, pictures: Pictures::new(leaf.textures, leaf.output), sheet };
+    let entries = entries(leaf.name, leaf.textures.front.size(), leaf.output);
+    let encoded: Vec<((String, Vec<u8>), FileRecord)> = entries
         .into_par_iter()
         .map(|(path, content)| {
-            let bytes = content.encode(leaf, &stem);
-            let record = content.record(leaf, &path, &bytes);
+            let bytes = work.encode(content);
+            let record = work.record(content, &path, &bytes);
             ((path, bytes), record)
         })
         .collect();
@@ -67,121 +70,149 @@ pub fn encode_leaf(leaf: &LeafFiles<'_>) -> Vec<(String, Vec<u8>)> {
     files
 }
 
+/// SHA-256 of bytes, in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The hash of a leaf's settings: two leaves of the same have the same bytes. Which of its files were
+/// asked for is no part of it.
+#[must_use]
+pub fn settings_sha256(spec_toml: &str) -> String {
+    let which = |line: &&str| !line.starts_with("maps = ") && !line.starts_with("formats = ");
+    sha256(spec_toml.lines().filter(which).collect::<Vec<_>>().join("\n").as_bytes())
+}
+
 /// What is in a file.
 #[derive(Debug, Clone, Copy)]
 enum Content {
-    Map(Side, MapKind),
+    Map(MapFile),
     Spec,
     Card,
     Materials,
+    Binary,
+    Stage,
     Drawing,
+    CutLines,
     Graph,
     GraphMl,
     Table(Table),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Side {
-    Front,
-    Back,
-}
-
-/// Every file but the manifest. Words that were asked for twice count once.
-fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String, Content)> {
+/// Every file but the manifest.
+fn entries(name: &str, size_px: usize, output: &Output) -> Vec<(String, Content)> {
+    let stem = file_stem(name);
     // The settings come first: a run that was killed can tell from them what it was making.
     let mut entries = vec![(SPEC_FILE.to_owned(), Content::Spec)];
-    for (folder, side) in [("", Side::Front), ("back/", Side::Back)] {
-        for &map in MapKind::ALL.iter().filter(|map| maps.contains(map)) {
-            let path = format!("{folder}{stem}_{}.png", map.suffix());
-            entries.push((path, Content::Map(side, map)));
-        }
-    }
-    for format in FormatKind::ALL.iter().filter(|format| formats.contains(format)) {
+    let maps = map_files::list(name, size_px, output);
+    entries.extend(maps.into_iter().map(|(path, file)| (path, Content::Map(file))));
+    for format in FormatKind::ALL.iter().filter(|format| output.formats.contains(format)) {
+        let mut one = |ending: &str, content: Content| {
+            entries.push((format!("{stem}{ending}"), content));
+        };
         match format {
             FormatKind::Obj => {
-                entries.push((format!("{stem}.obj"), Content::Card));
-                entries.push((format!("{stem}.mtl"), Content::Materials));
+                one(".obj", Content::Card);
+                one(".mtl", Content::Materials);
             }
-            FormatKind::Svg => entries.push((format!("{stem}.svg"), Content::Drawing)),
-            FormatKind::Json => entries.push((format!("{stem}_veins.json"), Content::Graph)),
-            FormatKind::GraphMl => {
-                entries.push((format!("{stem}_veins.graphml"), Content::GraphMl));
+            FormatKind::Glb => one(".glb", Content::Binary),
+            FormatKind::Usda => one(".usda", Content::Stage),
+            FormatKind::Svg => one(".svg", Content::Drawing),
+            FormatKind::Dxf => one(".dxf", Content::CutLines),
+            FormatKind::Json => one("_veins.json", Content::Graph),
+            FormatKind::GraphMl => one("_veins.graphml", Content::GraphMl),
+            FormatKind::Csv => {
+                for &table in Table::ALL {
+                    one(&format!("_{}.csv", table.word()), Content::Table(table));
+                }
             }
-            FormatKind::Csv => entries.extend(
-                Table::ALL
-                    .iter()
-                    .map(|&table| (format!("{stem}_{}.csv", table.word()), Content::Table(table))),
-            ),
         }
     }
     entries
 }
 
-impl Side {
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Front => "front",
-            Self::Back => "back",
-        }
-    }
-}
-
 impl Content {
-    fn encode(self, leaf: &LeafFiles<'_>, stem: &str) -> Vec<u8> {
-        let frame = &leaf.textures.frame;
-        let card = obj::Card {
-            stem,
-            maps: leaf.maps,
-            frame,
-            specularity: leaf.specularity,
-            roughness: leaf.roughness,
-        };
-        match self {
-            Self::Map(side, map) => leaf.encode_map(side, map),
-            Self::Spec => leaf.spec_toml.into(),
-            Self::Card => card.obj().into(),
-            Self::Materials => card.mtl().into(),
-            Self::Drawing => svg::svg(leaf.shown_name(), leaf.margin, leaf.venation, frame).into(),
-            Self::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
-            Self::GraphMl => graphml::graphml(leaf.venation).into(),
-            Self::Table(table) => table.csv(leaf.margin, leaf.venation).into(),
-        }
-    }
-
     const fn meaning(self) -> &'static str {
         match self {
-            Self::Map(_, map) => map.meaning(),
+            Self::Map(MapFile { map, .. }) => map.meaning(),
             Self::Spec => "the resolved settings; makes the same files again",
             Self::Card => {
                 "card with both sides, in metres: base at the origin, apex on +y, upper side to +z"
             }
             Self::Materials => "materials of the card",
+            Self::Binary => "card with both sides and its pictures, in metres",
+            Self::Stage => "card with both sides, in metres, with UsdPreviewSurface",
             Self::Drawing => "outline and veins in mm, a layer for every order",
+            Self::CutLines => "outline and veins in mm for cutters, a layer for every order",
             Self::Graph => "vein graph in mm: nodes with parent, radius and order",
             Self::GraphMl => "vein graph in mm for graph programs, loops included",
             Self::Table(table) => table.meaning(),
         }
     }
+}
 
-    fn record(self, leaf: &LeafFiles<'_>, path: &str, bytes: &[u8]) -> FileRecord {
-        let picture = match self {
-            Self::Map(side, map) => Some((side, map)),
-            _ => None,
+/// A leaf with everything that several of its files need.
+struct Work<'a> {
+    leaf: &'a LeafFiles<'a>,
+    pictures: Pictures<'a>,
+    sheet: Sheet,
+}
+
+impl Work<'_> {
+    fn encode(&self, content: Content) -> Vec<u8> {
+        let leaf = self.leaf;
+        let stem = file_stem(leaf.name);
+        let card = Card {
+            stem: &stem,
+            frame: &leaf.textures.frame,
+            sheet: &self.sheet,
+            specularity: leaf.specularity,
+            roughness: leaf.roughness,
         };
-        let map = picture.map(|(_, map)| map);
-        FileRecord {
-            path: path.to_owned(),
-            map: map.map(|map| map.word().to_owned()),
-            meaning: self.meaning().to_owned(),
-            side: picture.map(|(side, _)| side.word().to_owned()),
-            channels: map.map(|map| map.channels().to_owned()),
-            bits: map.map(MapKind::bits),
-            colour_space: map.map(|map| map.colour_space().to_owned()),
-            width: map.map(|_| leaf.textures.front.base_colour.width()),
-            height: map.map(|_| leaf.textures.front.base_colour.height()),
-            bytes: bytes.len(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+        let paths = || Side::ALL.map(|side| map_files::paths(leaf.name, side, leaf.output));
+        match content {
+            Content::Map(file) => self.pictures.encode(file, &leaf.texts(&leaf.seed.0.to_string())),
+            Content::Spec => leaf.spec_toml.into(),
+            Content::Card => obj::obj(&card).into(),
+            Content::Materials => obj::mtl(&card, &paths()).into(),
+            Content::Binary => glb::glb(&card, &self.embedded(), &leaf.provenance()),
+            Content::Stage => usda::usda(&card, &paths()).into(),
+            Content::Drawing => {
+                let drawing = svg::Drawing {
+                    title: leaf.shown_name(),
+                    style: leaf.output.svg_style,
+                    least_width_mm: leaf.output.least_width_mm,
+                };
+                svg::svg(&drawing, leaf.margin, leaf.venation, card.frame).into()
+            }
+            Content::CutLines => {
+                dxf::dxf(leaf.margin, leaf.venation, leaf.output.least_width_mm).into()
+            }
+            Content::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
+            Content::GraphMl => graphml::graphml(leaf.venation).into(),
+            Content::Table(table) => table.csv(leaf.margin, leaf.venation).into(),
         }
+    }
+
+    /// The pictures that stand in the card itself, whatever maps are written beside it.
+    fn embedded(&self) -> [glb::Pictures; 2] {
+        Side::ALL.map(|side| {
+            let picture = |map| self.pictures.plain(side, map);
+            glb::Pictures {
+                base_colour: picture(MapKind::BaseColour),
+                normal: picture(MapKind::Normal),
+                orm: picture(MapKind::Orm),
+                translucency: picture(MapKind::Translucency),
+            }
+        })
+    }
+
+    fn record(&self, content: Content, path: &str, bytes: &[u8]) -> FileRecord {
+        let mut record = FileRecord::new(path, content.meaning(), bytes);
+        if let Content::Map(file) = content {
+            self.pictures.describe(file, &mut record);
+        }
+        record
     }
 }
 
@@ -191,26 +222,19 @@ impl LeafFiles<'_> {
         if self.title.is_empty() { self.name } else { self.title }
     }
 
-    fn encode_map(&self, side: Side, map: MapKind) -> Vec<u8> {
-        let maps = match side {
-            Side::Front => &self.textures.front,
-            Side::Back => &self.textures.back,
-        };
-        let description = format!("{} side; {}", side.word(), map.meaning());
-        let seed = self.seed.0.to_string();
-        // The picture that is passed on alone carries the settings, so that it can be made again.
-        let settings = (map == MapKind::BaseColour).then_some(("Settings", self.spec_toml));
-        let texts: Vec<(&str, &str)> = [
-            ("Title", self.shown_name()),
-            ("Description", &description),
-            ("Name", self.name),
-            ("Seed", &seed),
-        ]
-        .into_iter()
-        .chain(settings)
-        .collect();
-        let pixels_per_mm = self.textures.frame.pixels_per_mm(maps.base_colour.width());
-        map.encode(maps, &Caption { pixels_per_mm: Some(pixels_per_mm), texts: &texts })
+    fn texts<'a>(&'a self, seed: &'a str) -> Texts<'a> {
+        Texts { title: self.shown_name(), name: self.name, seed, settings: self.spec_toml }
+    }
+
+    /// What a file that is passed on alone says of where it comes from.
+    fn provenance(&self) -> serde_json::Value {
+        serde_json::json!({
+            "name": self.name,
+            "title": self.title,
+            "seed": self.seed.0,
+            "lengthMm": graph::rounded(self.margin.length_mm()),
+            "settingsSha256": settings_sha256(self.spec_toml),
+        })
     }
 
     fn manifest(&self, files: Vec<FileRecord>) -> Manifest {
@@ -221,10 +245,13 @@ impl LeafFiles<'_> {
             name: self.name.to_owned(),
             title: self.title.to_owned(),
             seed: self.seed.0,
+            settings_sha256: settings_sha256(self.spec_toml),
+            profile: self.output.profile.word().to_owned(),
             size_px: self.textures.front.base_colour.width(),
             length_mm: graph::rounded(self.margin.length_mm()),
             area_mm2: graph::rounded(self.margin.area_mm2()),
             height_range_mm: graph::rounded(self.textures.height_range_mm),
+            thickness_range_mm: graph::rounded(self.textures.thickness_range_mm),
             petiole_pivot: uv_from_mm.place(self.textures.petiole_end),
             base: uv_from_mm.place(self.margin.outline()[0]),
             apex: uv_from_mm.place(self.margin.apex()),

@@ -23,6 +23,12 @@ pub struct Manifest {
     pub title: String,
     /// The seed it was drawn from.
     pub seed: u64,
+    /// Hash of the settings: leaves with the same are the same.
+    #[serde(default)]
+    pub settings_sha256: String,
+    /// Whose names and packing the maps follow.
+    #[serde(default)]
+    pub profile: String,
     /// Side of the maps (pixels).
     pub size_px: usize,
     /// Blade from base to apex (mm).
@@ -31,6 +37,8 @@ pub struct Manifest {
     pub area_mm2: f64,
     /// Height of the highest over the lowest value of the height maps (mm).
     pub height_range_mm: f64,
+    /// Thickness that the greatest value of the thickness maps stands for (mm).
+    pub thickness_range_mm: f64,
     /// Where the leaf hangs on its stem: the far end of the petiole.
     pub petiole_pivot: Place,
     /// Where the blade begins.
@@ -89,6 +97,9 @@ pub struct FileRecord {
     /// `front` or `back`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub side: Option<String>,
+    /// Halvings of a smaller level; absent on the map itself.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub level: Option<usize>,
     /// `rgba`, `rgb`, `grey+alpha` or `grey`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub channels: Option<String>,
@@ -108,6 +119,26 @@ pub struct FileRecord {
     pub bytes: usize,
     /// SHA-256 of its bytes, in hexadecimal.
     pub sha256: String,
+}
+
+impl FileRecord {
+    /// What is known of any file.
+    pub(super) fn new(path: &str, meaning: &str, bytes: &[u8]) -> Self {
+        Self {
+            path: path.to_owned(),
+            map: None,
+            meaning: meaning.to_owned(),
+            side: None,
+            level: None,
+            channels: None,
+            bits: None,
+            colour_space: None,
+            width: None,
+            height: None,
+            bytes: bytes.len(),
+            sha256: super::leaf_files::sha256(bytes),
+        }
+    }
 }
 
 impl SideMapping {

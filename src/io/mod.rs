@@ -4,6 +4,7 @@
 //! [`write::write_files`] puts named bytes into a folder. [`file_names`] tells beforehand what a run
 //! will write.
 
+pub mod batch;
 pub mod card;
 mod drawing;
 pub mod dxf;
@@ -13,6 +14,7 @@ pub mod graphml;
 pub mod image;
 mod leaf_files;
 pub mod manifest;
+mod map_files;
 pub mod mask;
 pub mod network;
 pub mod obj;
@@ -25,8 +27,8 @@ pub mod write;
 use std::path::{Path, PathBuf};
 
 pub use crate::spec::FormatKind;
-pub use image::MapKind;
-pub use leaf_files::{LeafFiles, encode_leaf, file_names};
+pub use crate::texture::map::MapKind;
+pub use leaf_files::{LeafFiles, encode_leaf, file_names, settings_sha256};
 
 /// The program and its version, as every file names its maker.
 pub const GENERATOR: &str = concat!("venation ", env!("CARGO_PKG_VERSION"));

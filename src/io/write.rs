@@ -3,13 +3,17 @@
 //! Every file is first written beside its place under a temporary name and flushed to disk; only
 //! when all are there are they renamed, in order. A run that is killed, or a disk that is full,
 //! leaves what was there before, or whole new files: put the file that describes the others last,
-//! and its presence says that a run was completed. Temporary files of killed runs lie about until
-//! someone deletes them; later runs pass them by.
+//! and its presence says that a run was completed. Temporary files of killed runs lie about until the
+//! next run writes to their folder: it deletes those whose process is gone.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Component, Path, PathBuf};
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+use sha2::{Digest, Sha256};
 
 use super::Error;
 
@@ -22,8 +26,13 @@ pub enum Overwrite {
     Force,
 }
 
-/// Temporary files begin with this, so that people know whose they are and `ls` hides them.
+/// Temporary files begin with this, so that people know whose they are and `ls` hides them. What
+/// follows is the machine, the process and a number: `.venation-tmp-5f0c91d2-4711-3`.
 const TEMPORARY_PREFIX: &str = ".venation-tmp-";
+
+/// Temporary files of other machines are taken for dead when nothing was written to them for so long:
+/// no file takes a fraction of it.
+const ABANDONED: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// Those of `names` (relative, with `/`) that are already in `folder`, in order.
 #[must_use]
@@ -83,6 +92,9 @@ impl Staged {
         let folder = path.parent().unwrap_or(Path::new(""));
         fs::create_dir_all(folder)
             .map_err(|source| Error::write(folder, blocked(folder, source)))?;
+        if !self.files.iter().any(|(_, path)| path.parent() == Some(folder)) {
+            remove_abandoned(folder);
+        }
         let (mut file, temporary) = create_temporary(folder)?;
         self.files.push((temporary, path.to_owned()));
         file.write_all(content)
@@ -130,11 +142,48 @@ fn create_temporary(folder: &Path) -> Result<(File, PathBuf), Error> {
     loop {
         // Process ids repeat, across containers even at the same time: on a clash, count on.
         let count = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let path = folder.join(format!("{TEMPORARY_PREFIX}{}-{count}", std::process::id()));
+        let name = format!("{TEMPORARY_PREFIX}{}-{}-{count}", machine(), std::process::id());
+        let path = folder.join(name);
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Ok(file) => return Ok((file, path)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             Err(source) => return Err(Error::write(folder, source)),
+        }
+    }
+}
+
+/// What tells the processes of this machine, or container, from those of others that write to the same
+/// disk: eight hexadecimal digits.
+fn machine() -> &'static str {
+    static TAG: LazyLock<String> = LazyLock::new(|| {
+        // A process number means something within one boot and one namespace only. Where the system
+        // has no such files, every machine is the same and only age tells.
+        let boot = fs::read("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+        let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+        let digest = Sha256::digest([&boot, namespace.as_os_str().as_encoded_bytes()].concat());
+        digest[..4].iter().map(|byte| format!("{byte:02x}")).collect()
+    });
+    &TAG
+}
+
+/// Deletes what killed runs left in a folder. Nothing is lost when it cannot: later runs pass by.
+fn remove_abandoned(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let Some(rest) = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY_PREFIX)) else {
+            continue;
+        };
+        let mut parts = rest.split('-');
+        let (on, process) = (parts.next(), parts.next().and_then(|id| id.parse::<u32>().ok()));
+        let gone = on == Some(machine())
+            && process.is_some_and(|id| {
+                Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{id}")).exists()
+            });
+        let age = entry.metadata().and_then(|data| data.modified()).map(|time| time.elapsed());
+        let old = age.is_ok_and(|age| age.is_ok_and(|age| age > ABANDONED));
+        if gone || old {
+            let _ = fs::remove_file(entry.path());
         }
     }
 }

@@ -1,6 +1,8 @@
 //! What is written of a leaf: maps, formats, and how they are named and drawn.
 
-use crate::parameter::{parameters, words};
+use crate::parameter::{Choice as _, parameters, words};
+use crate::texture::TextureError;
+use crate::texture::map::{MapKind, MapSet};
 
 words! {
     /// A form of the leaf other than pictures.
@@ -69,20 +71,177 @@ words! {
     }
 }
 
+impl Profile {
+    /// The maps that are written unless others are asked for.
+    #[must_use]
+    pub const fn maps(self) -> &'static [MapKind] {
+        use MapKind as M;
+        match self {
+            Self::Default => MapKind::DEFAULT,
+            Self::Unreal => &[M::BaseColour, M::NormalDx, M::Orm, M::Height, M::Translucency],
+            Self::UnityHdrp => {
+                &[M::BaseColour, M::Normal, M::Height, M::MaskMap, M::Translucency, M::Thickness]
+            }
+            Self::PolyHaven => &[
+                M::BaseColour,
+                M::Opacity,
+                M::Normal,
+                M::NormalDx,
+                M::Height,
+                M::Roughness,
+                M::AmbientOcclusion,
+                M::Orm,
+                M::Translucency,
+            ],
+            Self::AmbientCg => &[
+                M::BaseColour,
+                M::Opacity,
+                M::Normal,
+                M::NormalDx,
+                M::Height,
+                M::Roughness,
+                M::AmbientOcclusion,
+                M::Translucency,
+            ],
+            Self::SpeedTree => &[
+                M::BaseColour,
+                M::Opacity,
+                M::Normal,
+                M::Height,
+                M::Gloss,
+                M::AmbientOcclusion,
+                M::Translucency,
+                M::Thickness,
+            ],
+        }
+    }
+}
+
 parameters! {
     /// What is written of a leaf.
     pub struct OutputSpec {
-        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or all, or none.
-        maps: text("basecolor,opacity,height,normal"),
+        /// Maps to write of each side: some of basecolor, opacity, normal, normaldx, height,
+        /// roughness, gloss, ambientocclusion, orm, maskmap, translucency, thickness, veinmask,
+        /// veinorder, bump; or default (the profile's), or all, or none.
+        maps: text("default"),
         /// Other files to write: some of obj, glb, usda, svg, dxf, json, graphml, csv; or all, or none.
         formats: text("obj"),
         /// Whose names and packing the maps follow.
         profile: choice(Profile, Profile::Default),
+        /// Bits of a channel, 8 or 16; heights and thickness always have 16, vein orders 8.
+        bits: count(8, 8..=16, "bit"),
+        /// Whether every map comes with its smaller levels, in mips/: colour as a mean of light, coverage
+        /// kept.
+        mips: flag(false),
         /// The sheet of the cards in obj, glb and usda.
         card: choice(CardShape, CardShape::Square),
         /// What the lines of the svg are for.
         svg_style: choice(SvgStyle, SvgStyle::Print),
         /// Veins narrower than this are left out of svg and dxf: no cutter or pen could keep them.
         least_width_mm: number(0.0, 0.0..=100.0, "mm"),
+    }
+}
+
+/// Why it is not known what to write.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutputError {
+    /// A map that there is not.
+    #[error(transparent)]
+    Map(#[from] TextureError),
+    /// A format that there is not.
+    #[error("output.formats: `{word}` is none of {}", FormatKind::WORDS.join(", "))]
+    Format {
+        /// As given.
+        word: String,
+    },
+    /// Neither 8 nor 16.
+    #[error("output.bits = {bits}: a channel has 8 or 16")]
+    Bits {
+        /// As given.
+        bits: u64,
+    },
+}
+
+/// [`OutputSpec`] with every word understood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// The maps to write of each side.
+    pub maps: Vec<MapKind>,
+    /// The other forms to write.
+    pub formats: Vec<FormatKind>,
+    /// Whose names the maps have.
+    pub profile: Profile,
+    /// Bits of a channel where a map may have either: 8 or 16.
+    pub bits: u8,
+    /// Whether smaller levels are written too.
+    pub mips: bool,
+    /// The sheet of the cards.
+    pub card: CardShape,
+    /// What the lines of the SVG are for.
+    pub svg_style: SvgStyle,
+    /// Veins narrower than this are not drawn (mm).
+    pub least_width_mm: f64,
+}
+
+impl OutputSpec {
+    /// Understands every word.
+    ///
+    /// # Errors
+    ///
+    /// [`OutputError`] with the word that means nothing.
+    pub fn resolve(&self) -> Result<Output, OutputError> {
+        let maps = match self.maps.trim() {
+            "default" => self.profile.maps().to_vec(),
+            words => MapKind::list(words)?,
+        };
+        let formats = match self.formats.trim() {
+            "none" => Vec::new(),
+            "all" => FormatKind::ALL.to_vec(),
+            words => words.split(',').map(format).collect::<Result<_, _>>()?,
+        };
+        let bits = match self.bits {
+            8 => 8,
+            16 => 16,
+            bits => return Err(OutputError::Bits { bits }),
+        };
+        Ok(Output {
+            maps,
+            formats,
+            profile: self.profile,
+            bits,
+            mips: self.mips,
+            card: self.card,
+            svg_style: self.svg_style,
+            least_width_mm: self.least_width_mm,
+        })
+    }
+}
+
+fn format(word: &str) -> Result<FormatKind, OutputError> {
+    let word = word.trim();
+    let known = FormatKind::ALL.iter().copied().find(|kind| kind.word().eq_ignore_ascii_case(word));
+    known.ok_or_else(|| OutputError::Format { word: word.to_owned() })
+}
+
+impl Output {
+    /// The maps and formats of the default profile.
+    #[must_use]
+    pub fn standard() -> Self {
+        OutputSpec::default().resolve().expect("the default words are known")
+    }
+
+    /// The planes of pixels that all this is made from.
+    #[must_use]
+    pub fn planes(&self) -> MapSet {
+        let mut maps = self.maps.clone();
+        if self.formats.contains(&FormatKind::Glb) {
+            maps.extend([MapKind::Normal, MapKind::Orm, MapKind::Translucency]);
+        }
+        if self.bits == 16 {
+            // Fine normals are made from heights.
+            maps.push(MapKind::Height);
+        }
+        MapSet::of(&maps)
     }
 }

@@ -197,7 +197,7 @@ fn plan(
     tell(args, context, batch, &planned, batch.jobs.len() - todo.len())
 }
 
-fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     /// Threads beyond any machine's take minutes to start and make nothing faster.
     const MOST: usize = 1024;
     if threads == Some(0) {
@@ -240,7 +240,7 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     })
 }
 
-fn write_failure(error: &io::Error) -> Failure {
+pub(super) fn write_failure(error: &io::Error) -> Failure {
     match error {
         io::Error::WouldOverwrite { .. } => {
             Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))

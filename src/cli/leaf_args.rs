@@ -75,7 +75,7 @@ pub(crate) struct LeafArgs {
     growth: Option<GrowthWord>,
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
-    size: Option<u64>,
+    pub(crate) size: Option<u64>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]

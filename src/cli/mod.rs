@@ -3,6 +3,7 @@
 //! stdout is data, stderr is messages. Exit codes: 0 done, 1 unexpected, 2 bad arguments or input,
 //! 3 would overwrite, 4 some items of a batch failed.
 
+mod atlas;
 mod bench;
 mod compare;
 mod generate;
@@ -122,6 +123,7 @@ Examples:
   venation generate beech                               textures of a beech leaf in ./fagus-sylvatica
   venation generate beech --outline scan.jpg -o out     grown in the outline of a scanned leaf
   venation generate linden --seeds 1-50 -o lindens      fifty different leaves
+  venation atlas oak --seeds 1-16 --size 4096 -o oaks   one set of maps for engines
   venation compare beech -o growth.png                  growth types side by side
   venation inspect out                                  its veins measured beside real leaves
   venation bench --auxins 1000,2000,4000,8000           time against the number of sources
@@ -144,6 +146,8 @@ struct Cli {
 enum Command {
     /// Make leaves: textures, a card, outlines and graphs.
     Generate(Box<generate::Args>),
+    /// Lay many leaves on one set of maps.
+    Atlas(Box<atlas::Args>),
     /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
@@ -180,6 +184,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     let mut context = Context { stdout: &mut stdout, quiet: cli.quiet };
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
+        Command::Atlas(args) => atlas::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),

@@ -182,7 +182,7 @@ impl Sheet {
     }
 
     /// A few dozen corners around all that is covered, holes of some size left open; `None` when
-    /// nothing is.
+    /// nothing is, or when the leaf comes so near to the border that there is no room for a rim.
     #[must_use]
     pub fn cut_out(picture: &Grid<[u8; 4]>) -> Option<Self> {
         // Each traced pixel stands for a block of texels.
@@ -191,6 +191,12 @@ impl Sheet {
         let covered = covered_blocks(picture, block, side);
         // The leaf with a rim; its outline may move by the rim's width and still hold the leaf.
         let slack = SLACK * side as f64;
+        let rim = slack.ceil() as usize + 1;
+        let room = rim..side.saturating_sub(rim);
+        let outside = |i: usize| !room.contains(&(i % side)) || !room.contains(&(i / side));
+        if covered.iter().enumerate().any(|(i, &on)| on && outside(i)) {
+            return None;
+        }
         let nearest = nearest_sites(side, side, |i| covered[i]);
         let field = field(&nearest, side, slack as f32);
         let rings = contour::contours(&field, 0.0);

@@ -7,6 +7,7 @@
 //! needs 2.6 GB, and 256 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
 //! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
 
+pub mod atlas;
 mod deep;
 mod dilation;
 mod fields;

@@ -1,7 +1,12 @@
 //! The files of a leaf, read back by other programs' libraries or by eyes of their own.
 
 mod blender;
+mod card;
+mod gltf;
 mod pictures;
+mod profiles;
+mod usda;
+mod vectors;
 mod write;
 
 use std::collections::HashSet;
@@ -14,6 +19,7 @@ use venation::io::{self, FormatKind, LeafFiles, MapKind, encode_leaf, file_names
 use venation::margin::Margin;
 use venation::raster::Grid;
 use venation::seed::Seed;
+use venation::spec::Output;
 use venation::texture::{SideMaps, TextureSet};
 use venation::units::TextureFrame;
 use venation::veins::{VeinGraph, Venation};
@@ -23,6 +29,7 @@ const SIZE: usize = 48;
 /// A small leaf with one branch of each order, a join, a slit and a petiole.
 struct SmallLeaf {
     name: String,
+    output: Output,
     margin: Margin,
     venation: Venation,
     textures: TextureSet,
@@ -32,7 +39,8 @@ impl SmallLeaf {
     fn new(name: &str) -> Self {
         let margin = margin();
         let textures = textures(&margin);
-        Self { name: name.into(), margin, venation: venation(), textures }
+        let output = everything();
+        Self { name: name.into(), output, margin, venation: venation(), textures }
     }
 
     fn files(&self) -> LeafFiles<'_> {
@@ -46,14 +54,18 @@ impl SmallLeaf {
             spec_toml: "seed = 7\nname = \"prüf\"\n",
             specularity: 0.3,
             roughness: 0.35,
-            maps: MapKind::ALL,
-            formats: FormatKind::ALL,
+            output: &self.output,
         }
     }
 
     fn encoded(&self) -> Vec<(String, Vec<u8>)> {
         encode_leaf(&self.files())
     }
+}
+
+/// Every map and every format.
+fn everything() -> Output {
+    Output { maps: MapKind::ALL.to_vec(), formats: FormatKind::ALL.to_vec(), ..Output::standard() }
 }
 
 fn margin() -> Margin {
@@ -153,13 +165,14 @@ fn files_are_those_announced_and_the_same_on_any_number_of_threads() {
     let files = on(1);
     assert!(files == on(7));
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, file_names("oak", MapKind::ALL, FormatKind::ALL));
+    assert_eq!(names, file_names("oak", SIZE, &everything()));
     assert_eq!(names.last(), Some(&"manifest.json"));
     let all: HashSet<&&str> = names.iter().collect();
     assert_eq!(all.len(), names.len());
-    let maps = [MapKind::Height, MapKind::Normal, MapKind::AmbientOcclusion];
+    let maps = vec![MapKind::Height, MapKind::Normal, MapKind::AmbientOcclusion];
+    let some = Output { maps, ..Output::standard() };
     assert_eq!(
-        file_names("oak", &maps, FormatKind::DEFAULT),
+        file_names("oak", SIZE, &some),
         [
             "leaf.toml",
             "oak_Normal.png",
@@ -173,8 +186,9 @@ fn files_are_those_announced_and_the_same_on_any_number_of_threads() {
             "manifest.json"
         ]
     );
-    let twice = [MapKind::Height, MapKind::Height];
-    assert_eq!(file_names("oak", &twice, &[]).len(), 4);
+    let maps = vec![MapKind::Height, MapKind::Height];
+    let twice = Output { maps, formats: Vec::new(), ..Output::standard() };
+    assert_eq!(file_names("oak", SIZE, &twice).len(), 4);
 }
 
 #[test]
@@ -254,7 +268,8 @@ fn at(values: &[f32], stride: usize, i: u32, k: usize) -> f64 {
 fn materials_name_written_files_and_nothing_that_makes_glass() {
     let leaf = SmallLeaf::new("my oak");
     for maps in [MapKind::ALL, MapKind::DEFAULT, &[MapKind::Height], &[MapKind::BaseColour]] {
-        let files = encode_leaf(&LeafFiles { maps, ..leaf.files() });
+        let output = Output { maps: maps.to_vec(), ..everything() };
+        let files = encode_leaf(&LeafFiles { output: &output, ..leaf.files() });
         let mut pictures = Vec::new();
         for line in text_of(&files, "my_oak.mtl").lines() {
             let words: Vec<&str> = line.split(' ').collect();

@@ -4,7 +4,8 @@
 use std::process::Command;
 
 use venation::io::write::{Overwrite, write_files};
-use venation::io::{FormatKind, LeafFiles, MapKind, encode_leaf};
+use venation::io::{LeafFiles, encode_leaf};
+use venation::spec::Output;
 use venation::raster::Grid;
 
 use super::{SIZE, SmallLeaf};
@@ -78,7 +79,8 @@ fn blender_shows_both_sides_cut_out() {
     leaf.textures.front.base_colour = picture([200, 30, 30]);
     leaf.textures.back.base_colour = picture([30, 30, 200]).mirrored();
     let folder = tempfile::tempdir().unwrap();
-    let files = LeafFiles { maps: MapKind::DEFAULT, formats: FormatKind::DEFAULT, ..leaf.files() };
+    let standard = Output::standard();
+    let files = LeafFiles { output: &standard, ..leaf.files() };
     write_files(folder.path(), &encode_leaf(&files), Overwrite::Refuse).unwrap();
     let run = Command::new(python).args(["-c", SCRIPT]).arg(folder.path()).output().unwrap();
     let report = std::fs::read(folder.path().join("report.json"))

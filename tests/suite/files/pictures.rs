@@ -43,6 +43,9 @@ fn pngs_say_what_they_are() {
         ("VeinMask", 8, 0),
         ("VeinOrder", 8, 0),
         ("Bump", 8, 2),
+        ("NormalDX", 8, 2),
+        ("Gloss", 8, 0),
+        ("MaskMap", 8, 6),
     ];
     let per_metre = (leaf.textures.frame.pixels_per_mm(SIZE) * 1000.0).round() as u32;
     for folder in ["", "back/"] {

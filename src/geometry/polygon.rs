@@ -147,15 +147,8 @@ pub fn subdivided(polygon: &[DVec2], longest: f64) -> Vec<DVec2> {
     edges(polygon).flat_map(|(a, b)| pieces(a, b, longest)).collect()
 }
 
-/// The same line with points added, so that no two are farther apart than `longest`.
-#[must_use]
-pub fn subdivided_line(line: &[DVec2], longest: f64) -> Vec<DVec2> {
-    let pieces = line.windows(2).flat_map(|pair| pieces(pair[0], pair[1], longest));
-    pieces.chain(line.last().copied()).collect()
-}
-
 /// Points from `a` to before `b`, no two farther apart than `longest`.
-fn pieces(a: DVec2, b: DVec2, longest: f64) -> impl Iterator<Item = DVec2> {
+pub fn pieces(a: DVec2, b: DVec2, longest: f64) -> impl Iterator<Item = DVec2> {
     let n = (a.distance(b) / longest).ceil().max(1.0) as usize;
     (0..n).map(move |i| a.lerp(b, i as f64 / n as f64))
 }

@@ -388,20 +388,15 @@ impl GrowingBlade {
         if !metric.is_warped() && metric.stretch == DVec2::ONE {
             return Ok(there);
         }
-        let longest = self.margin.length_mm() * FINENESS;
-        let grown = |line: &[DVec2]| line.iter().map(|p| metric.place(*p)).collect::<Vec<_>>();
-        let made = if metric.is_warped() {
+        let outline = there.to_outline();
+        let outline = if metric.is_warped() {
             // Straight edges become bent ones.
-            let fine = |line: &[DVec2]| polygon::subdivided_line(line, longest);
-            let cuts = there.cuts().iter().map(|line| grown(&fine(line))).collect();
-            let outline = polygon::subdivided(there.outline(), longest);
-            let apex = there.apex();
-            let apex = outline.iter().position(|p| *p == apex).unwrap_or(0);
-            Margin::new(grown(&outline), apex, cuts, "change growth.type")
+            let longest = self.margin.length_mm() * FINENESS;
+            outline.mapped(longest, |p| metric.place(p))
         } else {
-            let cuts = there.cuts().iter().map(|line| grown(line)).collect();
-            Margin::new(grown(there.outline()), there.apex_index(), cuts, "change growth.type")
+            outline.scaled(metric.stretch)
         };
+        let made = Margin::from_outline(outline, "change growth.type");
         made.map_err(|source| GrowthError::Margin { step, source })
     }
 

@@ -145,7 +145,8 @@ fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
 
 #[test]
 fn non_uniform_growth_at_even_rates_agrees_with_the_plain_types_node_by_node() {
-    let pairs: [(GrowthType, fn(&mut RateSpec)); 4] = [
+    type Change = fn(&mut RateSpec);
+    let pairs: [(GrowthType, Change); 4] = [
         (GrowthType::Isotropic, |rates| rates.contrast = 0.0),
         (GrowthType::Anisotropic, |rates| {
             (rates.contrast, rates.even_growth) = (0.0, EvenGrowth::Anisotropic);

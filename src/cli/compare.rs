@@ -27,6 +27,7 @@ Examples:
   venation compare beech -o growth.png
   venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
+  venation compare oak --by seed --seeds 1-20 -o oaks.png    a contact sheet
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
 
 --by growth grows open venation without guided veins, which would look alike under every growth type;
@@ -43,7 +44,7 @@ pub(crate) struct Args {
     /// Seed of the leaf shown [default: the file's, else 1].
     #[arg(long, value_name = "N", conflicts_with = "seeds")]
     seed: Option<u64>,
-    /// Seeds to measure; the picture shows the first.
+    /// Seeds to measure; the picture shows the first, --by seed all of them [default with it: 1-12].
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
     /// The picture to write (PNG).
@@ -52,6 +53,9 @@ pub(crate) struct Args {
     /// The measures of every leaf as CSV.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
+    /// Only list the files that would be written.
+    #[arg(short = 'n', long)]
+    dry_run: bool,
     /// Overwrite files of an earlier run.
     #[arg(long)]
     force: bool,
@@ -76,18 +80,31 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             }
         }
     }
-    let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
+    let seeds = match (&args.seeds, args.seed) {
+        (None, None) if args.by == By::Seed => seeds::chosen(Some(SHEET_SEEDS), None, None)?,
+        (list, one) => seeds::chosen(list.as_deref(), one, document.seed)?,
+    };
     super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
+    if args.dry_run {
+        for path in args.out.iter().chain(&args.csv) {
+            writeln!(context.stdout, "{}", path.display())?;
+        }
+        return Ok(());
+    }
     let cases = args.by.cases();
+    let shown = |seed: u64| args.out.is_some() && (args.by == By::Seed || seed == seeds[0]);
     let work: Vec<(Case, u64)> =
         seeds.iter().flat_map(|&seed| cases.iter().map(move |&case| (case, seed))).collect();
     let mut cells: Vec<Cell> = work
         .par_iter()
-        .map(|&(case, seed)| cell(&document, case, seed, args.out.is_some() && seed == seeds[0]))
+        .map(|&(case, seed)| cell(&document, case, seed, shown(seed)))
         .collect::<Result<_, Failure>>()?;
     if let Some(path) = &args.out {
         let name = leaf_args::resolve(&document, seeds[0])?.name;
-        let title = format!("{name}: {}, seed {}", args.by.title(), seeds[0]);
+        let title = match args.by {
+            By::Seed => format!("{name}: {} seeds", seeds.len()),
+            by => format!("{name}: {}, seed {}", by.title(), seeds[0]),
+        };
         super::save(path, sheet(&title, args.by, &mut cells)?)?;
         writeln!(context.stdout, "{}", path.display())?;
     }
@@ -100,6 +117,9 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     }
     Ok(())
 }
+
+/// The seeds of a contact sheet unless others are asked for.
+const SHEET_SEEDS: &str = "1-12";
 
 /// Panels are no larger than this (pixels), nor those of lines than [`LINES_PX`].
 const PANEL_PX: usize = 720;
@@ -130,6 +150,11 @@ fn panel(
         return Ok(Panel { picture: trails::picture(grown, side), label, notes });
     }
     let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
+    if case == Case::Seed {
+        let notes = vec![format!("{:.0} mm", grown.margin.length_mm()), nodes];
+        let label = format!("seed {seed}");
+        return Ok(Panel { picture: textures.front.base_colour, label, notes });
+    }
     let notes = vec![nodes, format!("sinuosity {:.3}", metrics.sinuosity)];
     Ok(Panel { picture: textures.front.base_colour, label, notes })
 }

@@ -1,5 +1,6 @@
 //! The whole library and the program, from outside. One binary, so a small machine links once.
 
+mod batches; // many leaves: shards, killed runs, atlases, dry runs
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod closed; // closed venation: loops that close, against the same reference
 mod files; // what is written, read back by independent readers
@@ -12,5 +13,6 @@ mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
 mod support;
+mod shell; // schema, completions, manual
 mod textures; // what painting promises
 mod veins; // growth against an obvious reference, node by node

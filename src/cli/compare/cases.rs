@@ -16,6 +16,8 @@ pub(super) enum By {
     Scatter,
     /// The vein algorithms.
     Algorithm,
+    /// Nothing but the seed: a contact sheet of what a preset makes.
+    Seed,
 }
 
 /// What one panel shows.
@@ -24,6 +26,8 @@ pub(super) enum Case {
     Growth(GrowthType),
     Scatter(Pattern, u64),
     Algorithm(Algorithm),
+    /// The leaf as it is.
+    Seed,
 }
 
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
@@ -43,6 +47,7 @@ impl By {
             Self::Growth => "growth",
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
+            Self::Seed => "leaf",
         }
     }
 
@@ -51,6 +56,7 @@ impl By {
             Self::Growth => "growth types",
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
+            Self::Seed => "seeds",
         }
     }
 
@@ -62,13 +68,15 @@ impl By {
                 .flat_map(|&(px, _)| Pattern::ALL.iter().map(move |&p| Case::Scatter(p, px)))
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
+            Self::Seed => vec![Case::Seed],
         }
     }
 
-    /// Panels in a row of the sheet.
+    /// Panels in a row of the sheet; 0 for one that is about as high as wide.
     pub(super) fn columns(self) -> usize {
         match self {
             Self::Scatter => Pattern::ALL.len(),
+            Self::Seed => 0,
             Self::Growth | Self::Algorithm => self.cases().len(),
         }
     }
@@ -80,6 +88,7 @@ impl Case {
             Self::Growth(growth) => growth.to_string(),
             Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
             Self::Algorithm(algorithm) => algorithm.to_string(),
+            Self::Seed => "leaf".to_owned(),
         }
     }
 
@@ -88,6 +97,7 @@ impl Case {
         match self {
             Self::Growth(growth) => spec.growth.r#type = growth,
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
+            Self::Seed => {}
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
                 let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();

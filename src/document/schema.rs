@@ -11,7 +11,8 @@ use crate::parameter::{Kind, Parameter};
 /// The schema.
 #[must_use]
 pub fn schema() -> Json {
-    let mut root = object("A leaf: every number may be a range, from which each leaf draws its own.");
+    let mut root =
+        object("A leaf: every number may be a range, from which each leaf draws its own.");
     root["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     root["title"] = "venation leaf".into();
     root["$defs"] = json!({
@@ -24,14 +25,22 @@ pub fn schema() -> Json {
             "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2,
         },
     });
-    insert(&mut root, "seed", json!({
-        "description": "Seed of everything random; --seed and --seeds override it.",
-        "type": "integer", "minimum": 0,
-    }));
-    insert(&mut root, "version", json!({
-        "description": "The version of venation that wrote the file; not read.",
-        "type": "string",
-    }));
+    insert(
+        &mut root,
+        "seed",
+        json!({
+            "description": "Seed of everything random; --seed and --seeds override it.",
+            "type": "integer", "minimum": 0,
+        }),
+    );
+    insert(
+        &mut root,
+        "version",
+        json!({
+            "description": "The version of venation that wrote the file; not read.",
+            "type": "string",
+        }),
+    );
     for parameter in parameters() {
         insert(&mut root, &parameter.key, property(parameter));
     }

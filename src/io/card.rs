@@ -175,10 +175,7 @@ impl Sheet {
     #[must_use]
     pub fn square() -> Self {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-        Self {
-            points: corners.map(DVec2::from).to_vec(),
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-        }
+        Self { points: corners.map(DVec2::from).to_vec(), triangles: vec![[0, 1, 2], [0, 2, 3]] }
     }
 
     /// A few dozen corners around all that is covered, holes of some size left open; `None` when

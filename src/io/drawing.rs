@@ -42,7 +42,6 @@ pub(super) fn order_name(order: u8) -> String {
     }
 }
 
-
 /// Every edge of the pattern that is wide enough, once, in pieces as long as the cut allows.
 ///
 /// Widths never grow from the petiole to the tips under Murray's law, so what is left in is one piece.

@@ -207,8 +207,7 @@ impl Dxf {
 
     fn blocks(&mut self) {
         self.section("BLOCKS");
-        let blocks =
-            [(handle::MODEL, "*Model_Space", 0x20), (handle::PAPER, "*Paper_Space", 0x1c)];
+        let blocks = [(handle::MODEL, "*Model_Space", 0x20), (handle::PAPER, "*Paper_Space", 0x1c)];
         for (record, name, first) in blocks {
             self.group(0, "BLOCK");
             self.handle(first);

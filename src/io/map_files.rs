@@ -28,7 +28,10 @@ pub(super) fn list(name: &str, size: usize, output: &Output) -> Vec<(String, Map
     for side in Side::ALL {
         for &map in MapKind::ALL.iter().filter(|map| output.maps.contains(map)) {
             for level in 0..=levels {
-                files.push((path(name, output.profile, side, map, level), MapFile { side, map, level }));
+                files.push((
+                    path(name, output.profile, side, map, level),
+                    MapFile { side, map, level },
+                ));
             }
         }
     }
@@ -45,9 +48,8 @@ fn path(name: &str, profile: Profile, side: Side, map: MapKind, level: usize) ->
 
 /// Where a side's maps lie that a card may name; those that are not written are `None`.
 pub(super) fn paths(name: &str, side: Side, output: &Output) -> MapPaths {
-    let of = |map: MapKind| {
-        output.maps.contains(&map).then(|| path(name, output.profile, side, map, 0))
-    };
+    let of =
+        |map: MapKind| output.maps.contains(&map).then(|| path(name, output.profile, side, map, 0));
     MapPaths {
         base_colour: of(MapKind::BaseColour),
         opacity: of(MapKind::Opacity),
@@ -65,7 +67,8 @@ fn file_name(name: &str, profile: Profile, map: MapKind) -> String {
         Profile::Unreal => format!("T_{stem}_{suffix}"),
         // Small letters, digits and `_` are all that a slug may have.
         Profile::PolyHaven => {
-            let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+            let plain =
+                |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
             format!("{}_{suffix}", stem.chars().map(plain).collect::<String>())
         }
         _ => format!("{stem}_{suffix}"),

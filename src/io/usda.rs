@@ -129,14 +129,7 @@ enum Outputs {
     Red,
 }
 
-fn texture(
-    text: &mut String,
-    place: &str,
-    name: &str,
-    path: &str,
-    space: &str,
-    outputs: Outputs,
-) {
+fn texture(text: &mut String, place: &str, name: &str, path: &str, space: &str, outputs: Outputs) {
     let _ = write!(
         text,
         "            def Shader \"{name}\"\n            {{\n                uniform token info:id = \
@@ -152,9 +145,7 @@ fn texture(
         );
     }
     text.push_str(match outputs {
-        Outputs::Rgba => {
-            "                float3 outputs:rgb\n                float outputs:a\n"
-        }
+        Outputs::Rgba => "                float3 outputs:rgb\n                float outputs:a\n",
         Outputs::Normal => "                float3 outputs:rgb\n",
         Outputs::Red => "                float outputs:r\n",
     });

@@ -44,8 +44,11 @@ impl SideMaps {
             let mut row = Vec::with_capacity(6 * size);
             for x in 0..size {
                 let covered = self.base_colour[(x, y)][3] > 0;
-                let (dx, dy) =
-                    if covered { normals::slopes(&self.height, x, y, per_texel) } else { (0.0, 0.0) };
+                let (dx, dy) = if covered {
+                    normals::slopes(&self.height, x, y, per_texel)
+                } else {
+                    (0.0, 0.0)
+                };
                 let [nx, ny, nz] = normals::from_slopes(dx, dy);
                 let [nx, ny, nz] = [nx, ny, nz].map(|n| (n * 32767.5 + 32768.0) as u16);
                 let ny = if y_down { u16::MAX - ny } else { ny };

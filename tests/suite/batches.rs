@@ -329,9 +329,8 @@ fn the_readmes_job_template_runs() {
     let out = folder.path().join("out");
     let out = format!("Out={}", out.display());
     let parameters = ["-p", "Seeds=1-5", "-p", &out, "-p", "Preset=grass"];
-    let run = |step: &str| {
-        openjd(&[&["run", "leaves.yaml", "--step", step][..], &parameters].concat())
-    };
+    let run =
+        |step: &str| openjd(&[&["run", "leaves.yaml", "--step", step][..], &parameters].concat());
     let said = run("leaves");
     assert!(said.contains("openjd_progress: 100"), "{said}");
     run("merge");

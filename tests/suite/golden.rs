@@ -237,6 +237,18 @@ fn golden_particles_by_scatter_pattern() {
 }
 
 #[test]
+fn golden_atlas() {
+    let folder = crate::support::fresh();
+    let flags = ["--seeds", "1-9", "--size", "768", "--maps", "basecolor", "-o", "a"];
+    crate::support::succeed(folder.path(), &[&["atlas", "oak"][..], &flags].concat());
+    let picture = |name: &str| read(&folder.path().join("a").join(name)).expect("the sheet");
+    let name = "quercus-robur_atlas_BaseColor.png";
+    let panels =
+        [panel(picture(name), "front"), panel(picture(&format!("back/{name}")), "back, mirrored")];
+    compare("readme_atlas", &sheet("", &panels, 2, 640));
+}
+
+#[test]
 fn every_picture_of_the_readme_is_here() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let readme = std::fs::read_to_string(root.join("README.md")).expect("the README");

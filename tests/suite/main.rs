@@ -12,7 +12,7 @@ mod layers; // who may use whom
 mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
-mod support;
 mod shell; // schema, completions, manual
+mod support;
 mod textures; // what painting promises
 mod veins; // growth against an obvious reference, node by node

@@ -79,9 +79,7 @@ impl Job {
     /// The line of the batch's manifest for this leaf, from the manifest that it has on disk.
     pub(super) fn line(&self, problem: Option<String>) -> BatchLine {
         match self.manifest() {
-            Some(manifest) if problem.is_none() => {
-                BatchLine::of(&self.subfolder, &manifest)
-            }
+            Some(manifest) if problem.is_none() => BatchLine::of(&self.subfolder, &manifest),
             _ => BatchLine {
                 seed: self.seed,
                 name: self.spec.name.clone(),

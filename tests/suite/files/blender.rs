@@ -5,8 +5,8 @@ use std::process::Command;
 
 use venation::io::write::{Overwrite, write_files};
 use venation::io::{LeafFiles, encode_leaf};
-use venation::spec::Output;
 use venation::raster::Grid;
+use venation::spec::Output;
 
 use super::{SIZE, SmallLeaf};
 

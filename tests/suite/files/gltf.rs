@@ -111,9 +111,8 @@ fn both_sheets_lie_on_the_leaf_with_tangents_along_their_pictures() {
                 of("POSITION", 3).iter().map(|p| DVec3::new(p[0], p[1], p[2])).collect();
             let accessor = primitive["attributes"]["POSITION"].as_u64().unwrap() as usize;
             for (key, pick) in [("min", f64::min as fn(f64, f64) -> f64), ("max", f64::max)] {
-                let bound: Vec<f64> = (0..3)
-                    .map(|k| positions.iter().map(|p| p[k]).reduce(pick).unwrap())
-                    .collect();
+                let bound: Vec<f64> =
+                    (0..3).map(|k| positions.iter().map(|p| p[k]).reduce(pick).unwrap()).collect();
                 assert_eq!(glb.json["accessors"][accessor][key], json!(bound));
             }
             let facing = if i == 0 { 1.0 } else { -1.0 };
@@ -123,8 +122,7 @@ fn both_sheets_lie_on_the_leaf_with_tangents_along_their_pictures() {
             }
             // v runs down; the back picture is mirrored.
             for (p, uv) in positions.iter().zip(&uvs) {
-                let mut expected =
-                    leaf.textures.frame.uv_from_leaf(DVec2::new(p.x, p.y) * 1e3);
+                let mut expected = leaf.textures.frame.uv_from_leaf(DVec2::new(p.x, p.y) * 1e3);
                 if i == 1 {
                     expected.x = 1.0 - expected.x;
                 }
@@ -174,7 +172,8 @@ fn the_gltf_validator_has_nothing_to_say() {
     for preset in ["maple", "willow", "ginkgo"] {
         for card in ["square", "outline"] {
             let out = format!("{preset}-{card}");
-            let arguments = ["generate", preset, "--size", "256", "--format", "glb", "--card", card];
+            let arguments =
+                ["generate", preset, "--size", "256", "--format", "glb", "--card", card];
             crate::support::succeed(folder.path(), &[&arguments[..], &["-o", &out]].concat());
             let glb = crate::support::contents(&folder.path().join(&out));
             let glb = glb.keys().find(|path| path.extension().is_some_and(|e| e == "glb")).unwrap();
@@ -186,7 +185,11 @@ fn the_gltf_validator_has_nothing_to_say() {
     assert_eq!(text.lines().count(), 6, "{}", String::from_utf8_lossy(&output.stderr));
     for line in text.lines() {
         let issues: Value = serde_json::from_str(line).unwrap();
-        assert_eq!((&issues["numErrors"], &issues["numWarnings"]), (&json!(0), &json!(0)), "{line}");
+        assert_eq!(
+            (&issues["numErrors"], &issues["numWarnings"]),
+            (&json!(0), &json!(0)),
+            "{line}"
+        );
         // What is left is that it does not know the extension.
         for message in issues["messages"].as_array().unwrap() {
             let code = message["code"].as_str().unwrap();

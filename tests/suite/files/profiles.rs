@@ -69,7 +69,9 @@ fn packed_and_turned_maps_agree_with_what_they_are_made_of() {
             assert_eq!(pixel.0, [0, occlusion[i], 128, 255 - roughness[i]]);
         }
         let gloss = decoded("Gloss").into_luma8();
-        assert!(gloss.pixels().zip(roughness).all(|(gloss, roughness)| gloss[0] == 255 - roughness));
+        assert!(
+            gloss.pixels().zip(roughness).all(|(gloss, roughness)| gloss[0] == 255 - roughness)
+        );
     }
 }
 
@@ -164,8 +166,10 @@ fn edge_greens(
                 let (x, y) = (i % size * block, i / size * block);
                 let texels = (0..block * block).map(|k| picture[(x + k % block, y + k / block)]);
                 let count = (block * block) as f64;
-                let light: f32 =
-                    texels.clone().map(|t| Srgb::new(t[0], t[1], t[2]).into_linear::<f32>().green).sum();
+                let light: f32 = texels
+                    .clone()
+                    .map(|t| Srgb::new(t[0], t[1], t[2]).into_linear::<f32>().green)
+                    .sum();
                 let cover: f64 = texels.map(|t| f64::from(t[3]) / 255.0).sum::<f64>() / count;
                 let linear = palette::LinSrgb::new(0.0, light / count as f32, 0.0);
                 let encoded: Srgb<f32> = Srgb::from_linear(linear);

@@ -32,9 +32,8 @@ fn the_stage_is_in_metres_and_cut_out_by_a_threshold() {
     for path in text.split("@./").skip(1).filter_map(|rest| rest.split('@').next()) {
         assert!(files.iter().any(|(name, _)| name == path), "{path}");
     }
-    let brackets = |open: char, close: char| {
-        text.matches(open).count() == text.matches(close).count()
-    };
+    let brackets =
+        |open: char, close: char| text.matches(open).count() == text.matches(close).count();
     assert!(brackets('{', '}') && brackets('(', ')') && brackets('[', ']'));
 }
 

@@ -18,7 +18,8 @@ fn drawn(leaf: &SmallLeaf, svg_style: SvgStyle, least_width_mm: f64) -> Vec<(Str
 /// The points of every polyline.
 fn polylines(svg: &str) -> Vec<Vec<&str>> {
     let of = |line: &&str| line.starts_with("<polyline");
-    let points = |line: &str| line.split("points=\"").nth(1).unwrap().trim_end_matches("\"/>").len();
+    let points =
+        |line: &str| line.split("points=\"").nth(1).unwrap().trim_end_matches("\"/>").len();
     svg.lines()
         .filter(of)
         .map(|line| {
@@ -39,7 +40,10 @@ fn a_pen_draws_each_vein_in_one_go_and_a_laser_tells_cut_from_score() {
     let mut segments = HashSet::new();
     for line in polylines(svg) {
         for pair in line.windows(2) {
-            assert!(segments.insert((pair[0].min(pair[1]), pair[0].max(pair[1]))), "{pair:?} twice");
+            assert!(
+                segments.insert((pair[0].min(pair[1]), pair[0].max(pair[1]))),
+                "{pair:?} twice"
+            );
         }
     }
     let graph = leaf.venation.graph();
@@ -140,7 +144,8 @@ fn the_dxf_is_in_millimetres_closed_and_draws_nothing_twice() {
             points.push(points[0].clone());
         }
         for pair in points.windows(2) {
-            let (a, b) = (pair[0].clone().min(pair[1].clone()), pair[0].clone().max(pair[1].clone()));
+            let (a, b) =
+                (pair[0].clone().min(pair[1].clone()), pair[0].clone().max(pair[1].clone()));
             assert!(segments.insert((a, b)), "{pair:?} twice");
         }
     }

@@ -213,7 +213,7 @@ fn lists_that_make_no_leaf_say_why() {
     let right = LobeRecord { side: LobeSide::Right, ..LobeRecord::default() };
     assert!(problem(vec![right.clone()]).contains("a side without lobes"));
     // One at the apex is a leaf, with or without others.
-    outline(&[apex.clone()]).unwrap();
+    outline(std::slice::from_ref(&apex)).unwrap();
     outline(&[right, apex]).unwrap();
 }
 

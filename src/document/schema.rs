@@ -5,7 +5,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::{Value, parameters, value};
+use super::{Value, parameters, records, value};
 use crate::parameter::{Kind, Parameter};
 
 /// The schema.
@@ -41,8 +41,22 @@ pub fn schema() -> Json {
             "type": "string",
         }),
     );
-    for parameter in parameters() {
+    for parameter in parameters().iter().filter(|p| !records::is_record(&p.key)) {
         insert(&mut root, &parameter.key, property(parameter));
+    }
+    for (list, keys) in records::lists() {
+        let mut record = object("");
+        for (key, parameter) in keys {
+            insert(&mut record, key, property(parameter));
+        }
+        root["$defs"][list] = record;
+        let one = json!({ "$ref": format!("#/$defs/{list}") });
+        // The whole list, or some of its records by their numbers.
+        let records = json!({ "anyOf": [
+            { "type": "array", "items": one },
+            { "type": "object", "additionalProperties": one },
+        ] });
+        insert(&mut root, list, records);
     }
     root
 }
@@ -72,8 +86,12 @@ fn insert(group: &mut Json, key: &str, property: Json) {
 
 fn property(parameter: &Parameter) -> Json {
     let mut property = match &parameter.kind {
-        Kind::Number { min, max, .. } => ranged("number", json!(min), json!(max)),
-        Kind::Count { min, max, .. } => ranged("integer", json!(min), json!(max)),
+        Kind::Number { min, max, .. } => {
+            ranged(&json!({ "type": "number", "minimum": min, "maximum": max }))
+        }
+        Kind::Count { min, max, .. } => {
+            ranged(&json!({ "type": "integer", "minimum": min, "maximum": max }))
+        }
         Kind::Choice(words) => json!({ "enum": words }),
         Kind::Text => json!({ "type": "string" }),
         Kind::Flag => json!({ "type": "boolean" }),
@@ -94,8 +112,7 @@ fn property(parameter: &Parameter) -> Json {
 }
 
 /// A value, a pair of ends, or either as text.
-fn ranged(kind: &str, min: Json, max: Json) -> Json {
-    let one = json!({ "type": kind, "minimum": min, "maximum": max });
+fn ranged(one: &Json) -> Json {
     json!({ "anyOf": [
         one,
         { "type": "array", "items": one, "minItems": 2, "maxItems": 2 },
@@ -130,7 +147,7 @@ mod tests {
     #[test]
     fn every_parameter_stands_in_the_schema_with_its_limits() {
         let schema = schema();
-        for parameter in parameters() {
+        for parameter in parameters().iter().filter(|p| !records::is_record(&p.key)) {
             let property = at(&schema, &parameter.key);
             assert!(property["description"].is_string(), "{}", parameter.key);
             match &parameter.kind {

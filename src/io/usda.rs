@@ -71,10 +71,10 @@ fn bound(corners: &[Corner], pick: fn(f64, f64) -> f64) -> [f64; 3] {
 fn material(text: &mut String, card: &Card<'_>, side: Side, paths: &MapPaths, root: &str) {
     let word = side.word();
     let place = format!("/{root}/Materials/{word}");
-    let mut surface = format!(
-        "            def Shader \"surface\"\n            {{\n                uniform token info:id = \
+    let mut surface = String::from(
+        "            def Shader \"surface\"\n            {\n                uniform token info:id = \
          \"UsdPreviewSurface\"\n                float inputs:ior = 1.45\n                \
-         float inputs:metallic = 0\n                int inputs:useSpecularWorkflow = 0\n"
+         float inputs:metallic = 0\n                int inputs:useSpecularWorkflow = 0\n",
     );
     let mut textures = String::new();
     let mut connect = |input: &str, kind: &str, name: &str, output: &str| {

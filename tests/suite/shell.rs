@@ -51,8 +51,10 @@ fn problem(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<Stri
     }
     value.as_object()?.iter().find_map(|(key, value)| {
         let at = format!("{at}.{key}");
-        match schema["properties"].get(key) {
+        let others = &schema["additionalProperties"];
+        match schema.get("properties").and_then(|known| known.get(key)) {
             Some(schema) => problem(root, schema, value, &at),
+            None if others.is_object() => problem(root, others, value, &at),
             None => Some(format!("{at}: unknown")),
         }
     })
@@ -76,6 +78,9 @@ fn the_schema_takes_every_preset_and_refuses_what_the_program_refuses() {
         ("[margin]\nlength_mm = \"60..90\"\n", true),
         ("[growth]\ntotal_steps = [10, 12]\n", true),
         ("seed = 3\nversion = \"0.1.0\"\n", true),
+        ("[[margin.lobe]]\nangle_deg = 90\n[[margin.lobe]]\nside = \"apex\"\n", true),
+        ("[[margin.lobe]]\nangel_deg = 90\n", false),
+        ("[[margin.lobe]]\nangle_deg = 900\n", false),
         ("[veins]\nkill_distanse_mm = 2\n", false),
         ("[growth]\nscale = 3.0\n", false),
         ("[growth]\ntotal_steps = 2.5\n", false),

@@ -79,6 +79,9 @@ fn veins_too_narrow_are_left_out_and_the_rest_hangs_together() {
     }
 }
 
+/// Layer, whether closed, and points as they are printed.
+type Line<'a> = (&'a str, bool, Vec<(String, String)>);
+
 /// Group codes and values.
 fn groups(dxf: &str) -> Vec<(u32, &str)> {
     let lines: Vec<&str> = dxf.lines().collect();
@@ -120,7 +123,7 @@ fn the_dxf_is_in_millimetres_closed_and_draws_nothing_twice() {
         .filter(|pair| pair[0] == (100, "AcDbLayerTableRecord"))
         .map(|pair| pair[1].1)
         .collect();
-    let mut lines: Vec<(&str, bool, Vec<(String, String)>)> = Vec::new();
+    let mut lines: Vec<Line<'_>> = Vec::new();
     let mut layer = "";
     for window in groups[entities..].windows(2) {
         match window {
@@ -149,7 +152,7 @@ fn the_dxf_is_in_millimetres_closed_and_draws_nothing_twice() {
             assert!(segments.insert((a, b)), "{pair:?} twice");
         }
     }
-    assert_eq!(lines[0].1, true, "the outline is closed");
+    assert!(lines[0].1, "the outline is closed");
     assert_eq!(lines[0].2.len(), leaf.margin.outline().len());
     assert!(lines[0].2.contains(&("0".into(), "55".into())), "the apex, 55 mm up");
     assert_eq!(by_layer["CUT"], 2);

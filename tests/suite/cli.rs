@@ -287,7 +287,8 @@ fn compare_writes_a_sheet_and_a_table() {
     let table = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
     let growths: Vec<&str> =
         table.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
-    assert_eq!(growths, ["none", "marginal", "isotropic", "anisotropic"]);
+    let types = ["none", "marginal", "isotropic", "anisotropic", "non-uniform"];
+    assert_eq!(growths, types);
     let sheet = std::fs::read(folder.path().join("sheet.png")).unwrap();
     assert_eq!(&sheet[1..4], b"PNG");
     fail(folder.path(), 3, &arguments);

@@ -26,6 +26,10 @@ pub enum Stage {
     Speckles,
     /// The fine structure of the tissue between the veins.
     Tissue,
+    /// What has hurt the leaf.
+    Damage,
+    /// Where a leaf turns first.
+    Senescence,
     /// The bend of the petiole.
     Petiole,
     /// Values dealt anew, for comparison with the order they are in.
@@ -40,6 +44,8 @@ impl Stage {
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
+            Self::Damage => "stage/damage",
+            Self::Senescence => "stage/senescence",
             Self::Petiole => "stage/petiole",
             Self::Shuffle => "stage/shuffle",
         }

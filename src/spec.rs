@@ -4,8 +4,9 @@ use crate::growth::GrowthSpec;
 use crate::margin::MarginSpec;
 use crate::parameter::parameters;
 use crate::texture::TextureSpec;
+use crate::texture::damage::DamageSpec;
 use crate::texture::petiole::PetioleSpec;
-use crate::texture::pigment::ColourSpec;
+use crate::texture::pigment::{ColourSpec, StateSpec};
 use crate::texture::relief::ReliefSpec;
 use crate::veins::VeinSpec;
 
@@ -40,6 +41,10 @@ parameters! {
         petiole: group(PetioleSpec, PetioleSpec::default()),
         /// Pigments.
         colour: group(ColourSpec, ColourSpec::default()),
+        /// Season, maturity and health: colour and tissue only.
+        state: group(StateSpec, StateSpec::default()),
+        /// What has happened to the leaf.
+        damage: group(DamageSpec, DamageSpec::default()),
         /// Heights and shine.
         relief: group(ReliefSpec, ReliefSpec::default()),
         /// Size of the pictures.

@@ -7,18 +7,22 @@
 //! needs 2.6 GB, and 256 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
 //! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
 
+pub mod damage;
 mod dilation;
 mod fields;
 mod guide;
+mod lattice;
 pub mod map;
 pub mod normals;
 mod occlusion;
 mod optics;
 pub mod petiole;
 pub mod pigment;
+pub mod plates;
 pub mod relief;
 mod scene;
 mod side;
+pub mod spectrum;
 mod texel;
 mod tissue;
 
@@ -28,9 +32,10 @@ use crate::parameter::parameters;
 use crate::seed::Seed;
 use crate::units::TextureFrame;
 use crate::veins::Venation;
+use damage::DamageSpec;
 use map::{MapKind, MapSet};
 use petiole::PetioleSpec;
-use pigment::ColourSpec;
+use pigment::{Albedo, ColourSpec, StateSpec};
 use relief::ReliefSpec;
 use scene::Scene;
 pub use side::SideMaps;
@@ -54,6 +59,10 @@ pub struct Paint<'a> {
     pub petiole: &'a PetioleSpec,
     /// Pigments.
     pub colour: &'a ColourSpec,
+    /// Season, maturity and health.
+    pub state: &'a StateSpec,
+    /// What has happened to the leaf.
+    pub damage: &'a DamageSpec,
     /// Heights and surface.
     pub relief: &'a ReliefSpec,
     /// The planes to keep.
@@ -109,6 +118,7 @@ pub fn paint(
         height_range_mm: scene.height_range_mm(),
         thickness_range_mm: scene.thickness_range_mm(),
         petiole_end: scene.petiole_end(),
+        albedo: paint.colour.albedo,
     })
 }
 
@@ -155,6 +165,8 @@ pub struct TextureSet {
     pub thickness_range_mm: f64,
     /// Where the petiole leaves the stem, its far end (mm).
     pub petiole_end: glam::DVec2,
+    /// What the base colour holds.
+    pub albedo: Albedo,
 }
 
 impl TextureSet {

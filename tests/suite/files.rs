@@ -127,7 +127,15 @@ fn textures(margin: &Margin) -> TextureSet {
         bump: grid(|i| pixel(i, salt + 5)),
     };
     let (front, back) = (side(1), side(2));
-    TextureSet { frame, front, back, height_range_mm: 0.75, thickness_range_mm: 1.5, petiole_end }
+    TextureSet {
+        frame,
+        front,
+        back,
+        height_range_mm: 0.75,
+        thickness_range_mm: 1.5,
+        petiole_end,
+        albedo: venation::texture::pigment::Albedo::Total,
+    }
 }
 
 fn grid<T>(value: impl FnMut(usize) -> T) -> Grid<T> {

@@ -14,7 +14,8 @@ parameters! {
     /// What is written of a leaf.
     pub struct OutputSpec {
         /// Maps to write of each side: some of basecolor, opacity, normal, height, roughness,
-        /// ambientocclusion, orm, translucency, thickness, veinmask, veinorder, bump; or all, or none.
+        /// ambientocclusion, orm, translucency, thickness, veinmask, veinorder, bump, preview,
+        /// enhancement; or all, or none.
         maps: text(
             "basecolor,opacity,normal,height,roughness,ambientocclusion,orm,translucency,thickness,\
              veinmask,veinorder"

@@ -2,6 +2,7 @@
 //! their measures.
 
 mod cases;
+mod season;
 mod trails;
 
 use std::path::PathBuf;
@@ -28,6 +29,8 @@ Examples:
   venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
+  venation compare maple --by season -o year.png             spring to litter: front, back, against the light
+  venation compare maple --by season --frames 60 -o film.png an animated PNG; a folder of pictures without .png
 
 --by growth grows open venation without guided veins, which would look alike under every growth type;
 --set veins.guides.primary=pinnate and --set veins.algorithm=auxin-closed keep them.
@@ -52,6 +55,10 @@ pub(crate) struct Args {
     /// The measures of every leaf as CSV.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
+    /// `--by season`: so many pictures of the season from 0 to 1, instead of a sheet; an animated PNG
+    /// where `-o` ends in .png, else a folder of pictures.
+    #[arg(long, value_name = "N", requires = "out", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    frames: Option<u32>,
     /// Overwrite files of an earlier run.
     #[arg(long)]
     force: bool,
@@ -77,6 +84,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         }
     }
     let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
+    if args.by == By::Season {
+        return through_the_year(args, &document, seeds[0], context);
+    }
+    if args.frames.is_some() {
+        return Err(Failure::Input("--frames: only --by season makes a film".into()));
+    }
     super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
     let cases = args.by.cases();
     let work: Vec<(Case, u64)> =
@@ -97,6 +110,27 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     }
     if !context.quiet {
         eprint!("{}", summary(args.by, &cells));
+    }
+    Ok(())
+}
+
+fn through_the_year(
+    args: &Args,
+    document: &Document,
+    seed: u64,
+    context: &mut Context<'_>,
+) -> Result<(), Failure> {
+    if let (Some(frames), Some(out)) = (args.frames, &args.out) {
+        let year = season::Year::new(document, seed)?;
+        return year.film(frames as usize, out, args.force, context);
+    }
+    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
+    let (sheet, table) = season::Year::new(document, seed)?.sheet()?;
+    for (path, bytes) in [(&args.out, sheet), (&args.csv, table.into_bytes())] {
+        if let Some(path) = path {
+            super::save(path, bytes)?;
+            writeln!(context.stdout, "{}", path.display())?;
+        }
     }
     Ok(())
 }

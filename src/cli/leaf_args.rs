@@ -76,6 +76,22 @@ pub(crate) struct LeafArgs {
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
+    /// 0 summer, 0.5 autumn colour, 1 litter [default: the preset's, 0].
+    #[arg(long, value_name = "0..1")]
+    season: Option<f64>,
+    /// 0 just unfolded, 1 mature [default: the preset's, 1].
+    #[arg(long, value_name = "0..1")]
+    maturity: Option<f64>,
+    /// 1 well, less sick [default: the preset's, 1].
+    #[arg(long, value_name = "0..1")]
+    health: Option<f64>,
+    /// What has happened to it, as holes=0.2,margin_bites=0.1,skeletonise=0.1 (shares of the blade),
+    /// mines, spots, scorch, tears (0 to 1).
+    #[arg(long, value_name = "LIST")]
+    damage: Option<String>,
+    /// Other wounds on the same leaf.
+    #[arg(long, value_name = "N")]
+    damage_seed: Option<u64>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]
@@ -150,6 +166,18 @@ impl LeafArgs {
         }
         if let Some(size) = self.size {
             document.set(&format!("texture.size_px={size}"), "--size")?;
+        }
+        let state = [("season", self.season), ("maturity", self.maturity), ("health", self.health)];
+        for (name, value) in state {
+            if let Some(value) = value {
+                document.set(&format!("state.{name}={value}"), &format!("--{name}"))?;
+            }
+        }
+        for wound in self.damage.iter().flat_map(|list| list.split(',')) {
+            document.set(&format!("damage.{}", wound.trim()), "--damage")?;
+        }
+        if let Some(seed) = self.damage_seed {
+            document.set(&format!("damage.seed={seed}"), "--damage-seed")?;
         }
         if let Some(path) = &self.outline {
             self.import_outline(path, &mut document, context)?;

@@ -23,9 +23,15 @@ const WIDTH_STEP: f64 = 0.1;
 /// Width of the outline (mm): a hairline that still shows on screen.
 const OUTLINE_WIDTH_MM: f64 = 0.1;
 
-/// The drawing of a leaf.
+/// The drawing of a leaf; `rings` outline what is left of a damaged blade.
 #[must_use]
-pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFrame) -> String {
+pub fn svg(
+    title: &str,
+    margin: &Margin,
+    venation: &Venation,
+    frame: &TextureFrame,
+    rings: &[Vec<DVec2>],
+) -> String {
     let page = Page { frame };
     let side = number(frame.side_mm);
     let mut svg = format!(
@@ -37,7 +43,11 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
         escaped(title)
     );
     open_layer(&mut svg, 1, "outline", &format!(" stroke-width=\"{OUTLINE_WIDTH_MM}\""));
-    let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(margin.outline()));
+    // Of a damaged blade what is left, gaps as rings of their own.
+    let whole = [margin.outline().to_vec()];
+    for ring in if rings.is_empty() { &whole[..] } else { rings } {
+        let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(ring));
+    }
     for cut in margin.cuts() {
         let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
     }

@@ -15,7 +15,10 @@ use glam::DVec2;
 use super::guide::{Guide, Lattice, Place, between, mixed};
 use crate::margin::Margin;
 use crate::parameter::parameters;
+use crate::raster::Grid;
+use crate::raster::contour::contours;
 use crate::seed::{Rng, Seed, Stage};
+use crate::units::TextureFrame;
 use crate::veins::Venation;
 
 parameters! {
@@ -91,13 +94,19 @@ pub(super) struct Wounds {
 }
 
 /// What a wound is at one texel.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WoundAt {
     /// Share of the tissue that is gone.
     pub gone: f32,
     /// Depth in a skeletonised area (mm).
     pub bare: f32,
     pub injury: Injury,
+}
+
+impl WoundAt {
+    /// Sound tissue.
+    pub(super) const NONE: Self =
+        Self { gone: 0.0, bare: FAR_MM, injury: Injury { brown: 0.0, pale: 0.0 } };
 }
 
 impl Wounds {
@@ -134,6 +143,26 @@ impl Wounds {
         let upper = &self.nodes[(i + 1) * self.side..(i + 2) * self.side];
         let nodes = lower.iter().zip(upper).map(|(a, b)| mixed(a, b, t)).collect();
         WoundRow { wounds: self, nodes }
+    }
+
+    /// The outline of what is left of the blade, and of the gaps in it (mm): simple rings,
+    /// anticlockwise around tissue, clockwise around gaps. Skeletonised areas count as tissue.
+    pub(super) fn rings(&self, guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>> {
+        if self.nodes.iter().all(|node| node[GONE] <= 0.0) {
+            return Vec::new();
+        }
+        let depth = |(i, node): (usize, &Wound)| guide.node(i).edge.min(-node[GONE]);
+        let depths = self.nodes.iter().enumerate().map(depth).collect();
+        let field = Grid::from_values(self.side, self.side, depths);
+        let in_mm = |mut ring: Vec<DVec2>| {
+            for p in &mut ring {
+                *p = frame.leaf_from_pixel(*p, self.side);
+            }
+            // Rows run down and leaves up: the turn is the other way.
+            ring.reverse();
+            ring
+        };
+        contours(&field, 0.0).into_iter().map(in_mm).collect()
     }
 }
 

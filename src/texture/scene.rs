@@ -153,6 +153,12 @@ impl Scene {
         self.stalk.end()
     }
 
+    /// Outline and gaps of a damaged blade (mm); none where it is whole.
+    pub(super) fn rings(&self) -> Vec<Vec<DVec2>> {
+        let wounds = self.wounds.as_ref();
+        wounds.map_or_else(Vec::new, |wounds| wounds.rings(&self.guide, &self.frame))
+    }
+
     /// From the lowest to the highest place that the height maps can show (mm).
     pub(super) fn height_range_mm(&self) -> f64 {
         2.0 * f64::from(self.relief.bound())
@@ -198,7 +204,7 @@ impl Scene {
             for x in span {
                 let i = line + x;
                 let stalk = stalk.as_ref().map_or(StalkAt::default(), |stalk| stalk[i]);
-                let wound = wounds.as_ref().map_or(WoundAt::default(), |wounds| wounds.at(x));
+                let wound = wounds.as_ref().map_or(WoundAt::NONE, |wounds| wounds.at(x));
                 let texel = walker.texel(x, y, guide.at(x), veins[i], (cover[i], wound), stalk);
                 if texel.alpha > 0 {
                     // Mirrored with the picture: what lies right in front lies left behind.

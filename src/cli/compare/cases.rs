@@ -16,6 +16,8 @@ pub(super) enum By {
     Scatter,
     /// The vein algorithms.
     Algorithm,
+    /// One leaf from spring to litter: front, back and against the light; `--frames N` for a film.
+    Season,
 }
 
 /// What one panel shows.
@@ -43,6 +45,7 @@ impl By {
             Self::Growth => "growth",
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
+            Self::Season => "season",
         }
     }
 
@@ -51,6 +54,7 @@ impl By {
             Self::Growth => "growth types",
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
+            Self::Season => "season",
         }
     }
 
@@ -62,6 +66,8 @@ impl By {
                 .flat_map(|&(px, _)| Pattern::ALL.iter().map(move |&p| Case::Scatter(p, px)))
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
+            // The year has a sheet of its own: the leaf grows once.
+            Self::Season => Vec::new(),
         }
     }
 
@@ -69,7 +75,7 @@ impl By {
     pub(super) fn columns(self) -> usize {
         match self {
             Self::Scatter => Pattern::ALL.len(),
-            Self::Growth | Self::Algorithm => self.cases().len(),
+            Self::Growth | Self::Algorithm | Self::Season => self.cases().len(),
         }
     }
 }

@@ -55,6 +55,10 @@ parameters! {
         back_structure: number(0.4, 0.0..=2.0, "plates"),
         /// Bloom of the lower side, wax or hair: 0 none, 1 white.
         back_bloom: number(0.12, 0.0..=1.0, ""),
+        /// Brown of the lower side: the rusty felt of some leaves.
+        back_brown: number(0.0, 0.0..=3.0, ""),
+        /// Bloom of the upper side.
+        front_bloom: number(0.0, 0.0..=1.0, ""),
         /// Anthocyanin of a leaf that has just unfolded.
         flush_anthocyanin_ug_cm2: number(3.0, 0.0..=60.0, "µg/cm²"),
         /// How it turns in autumn.
@@ -119,6 +123,8 @@ pub(in crate::texture) struct Mixer {
     back_chlorophyll: f32,
     back_structure: f32,
     back_bloom: f32,
+    back_brown: f32,
+    front_bloom: f32,
     /// Chlorophyll's colour and carotenoid of a leaf this young, as shares.
     young: [f32; 2],
     flush: f32,
@@ -155,6 +161,8 @@ impl Mixer {
             back_chlorophyll: pigments.back_chlorophyll as f32,
             back_structure: pigments.back_structure as f32,
             back_bloom: pigments.back_bloom as f32,
+            back_brown: pigments.back_brown as f32,
+            front_bloom: pigments.front_bloom as f32,
             young: [1.0 - 0.55 * youth, 1.0 - 0.4 * youth],
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
@@ -177,17 +185,18 @@ impl Mixer {
         below[0] *= self.back_chlorophyll;
         below[1] *= 0.5 + 0.5 * self.back_chlorophyll;
         below[2] *= 0.25 + 0.5 * self.back_chlorophyll;
-        below[3] *= 0.85;
+        below[3] = 0.85 * below[3] + self.back_brown;
         below[4] += self.back_structure;
         let [r, g, b, tr, tg, tb, ..] = self.lattice.at(above);
         let [br, bg, bb, ..] = self.lattice.at(below);
         // Light meets the same tissue from either side; a bloom sends some of it back.
         let bloom = self.back_bloom * (1.0 - 0.4 * share(&BACK)) * (1.0 - tissue.injury.brown);
-        let white = |value: f32| value + (BLOOM - value) * bloom;
+        let white = |value: f32, bloom: f32| value + (BLOOM - value) * bloom;
         let through = [tr, tg, tb].map(|value| value * (1.0 - 0.5 * bloom));
         let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
-        let front = Shade { reflected: [r, g, b], through };
-        let back = Shade { reflected: [white(br), white(bg), white(bb)], through };
+        let front = [r, g, b].map(|value| white(value, self.front_bloom));
+        let front = Shade { reflected: front, through };
+        let back = Shade { reflected: [br, bg, bb].map(|value| white(value, bloom)), through };
         if near == 0.0 {
             return [front, back];
         }

@@ -79,6 +79,9 @@ mod tests {
     #[test]
     fn quantiles_of_a_count() {
         let distances = Distances::of((0..101).rev().map(f64::from).collect());
-        assert_eq!((distances.median, distances.upper_quartile, distances.max), (50.0, 75.0, 100.0));
+        assert_eq!(
+            (distances.median, distances.upper_quartile, distances.max),
+            (50.0, 75.0, 100.0)
+        );
     }
 }

@@ -181,9 +181,8 @@ impl Stretch {
             move |list: &[f64]| {
                 let half = Half::of_numbers(list, extras);
                 // A tail or a shoulder wider than the waist is not one.
-                let beyond = |p: Option<DVec2>| {
-                    p.map_or(0.0, |p| (p.x - half.waist.x + 1e-3).max(0.0))
-                };
+                let beyond =
+                    |p: Option<DVec2>| p.map_or(0.0, |p| (p.x - half.waist.x + 1e-3).max(0.0));
                 let distances = self.squared_distances(&half.sampled());
                 let sum: f64 = distances.iter().map(|d| libm::pow(*d, power / 2.0)).sum();
                 libm::pow(sum / distances.len() as f64, 1.0 / power)

@@ -46,6 +46,45 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Whether the leaf is `unilobed` or `lobed`.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        if self.is_unilobed() { "unilobed" } else { "lobed" }
+    }
+
+    /// Whether the blade of a unilobed leaf reaches below its base, on either side.
+    #[must_use]
+    pub fn has_tail(&self) -> bool {
+        self.is_unilobed() && [&self.spec.right, &self.spec.left].iter().any(|s| s.tail_depth > 0.0)
+    }
+
+    /// Whether the blade of a unilobed leaf reaches above its apex, on either side.
+    #[must_use]
+    pub fn has_shoulder(&self) -> bool {
+        let sides = [&self.spec.right, &self.spec.left];
+        self.is_unilobed() && sides.iter().any(|s| s.shoulder_height > 0.0)
+    }
+
+    fn is_unilobed(&self) -> bool {
+        self.spec.kind == MarginKind::Unilobed
+    }
+
+    /// What was found, in a few words.
+    #[must_use]
+    pub fn description(&self) -> String {
+        let mut words = match self.lobes {
+            1 => "unilobed".to_owned(),
+            lobes => format!("{lobes} lobes"),
+        };
+        if self.has_tail() {
+            words += ", basal extension";
+        }
+        if self.has_shoulder() {
+            words += ", apical extension";
+        }
+        words
+    }
+
     /// The greatest distance, in the direction where it is larger (lengths).
     #[must_use]
     pub fn worst(&self) -> f64 {
@@ -136,9 +175,11 @@ impl Sides {
         let shoulder = Extras { shoulder: true, ..Extras::default() };
         let best = |choices: &[Extras], side: &Side| {
             let fits = choices.iter().map(|&extras| side.unilobed(extras));
-            fits.reduce(|simple, more| {
-                if more.1 < simple.1 - WORTH_AN_EXTENSION { more } else { simple }
-            })
+            fits.reduce(
+                |simple, more| {
+                    if more.1 < simple.1 - WORTH_AN_EXTENSION { more } else { simple }
+                },
+            )
             .expect("there are choices")
         };
         let choices: &[Extras] = match self.at_apex {
@@ -192,8 +233,7 @@ fn at_apex(sides: &[Side; 2]) -> AtApex {
     const STANDS_OUT: f64 = 0.08;
     let falls = |side: &Side| {
         let line = side.line();
-        let highest =
-            (0..line.len()).max_by(|&a, &b| line[a].y.total_cmp(&line[b].y)).unwrap_or(0);
+        let highest = (0..line.len()).max_by(|&a, &b| line[a].y.total_cmp(&line[b].y)).unwrap_or(0);
         let lowest = line[highest..].iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         line[highest].y > HIGHER && lowest > 1.0 - STANDS_OUT
     };

@@ -100,8 +100,16 @@ fn lateral(flank: &Flank, at_apex: AtApex, side: LobeSide) -> Vec<LobeRecord> {
             origin: origin.y,
             angle_deg: degrees(along),
             length: vein.length(),
-            lower: half_lobe(lower, lower.foot_angle + rises - along, lower.tip_angle + along - rises),
-            upper: half_lobe(upper, upper.foot_angle + along - falls, upper.tip_angle + falls - along),
+            lower: half_lobe(
+                lower,
+                lower.foot_angle + rises - along,
+                lower.tip_angle + along - rises,
+            ),
+            upper: half_lobe(
+                upper,
+                upper.foot_angle + along - falls,
+                upper.tip_angle + falls - along,
+            ),
             ..plain()
         };
         let notched = at_apex == AtApex::Valley && k + 1 == last;

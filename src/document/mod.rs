@@ -246,7 +246,7 @@ mod tests {
             "",
         )
         .unwrap();
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for seed in 0..200 {
             let spec = document.resolve(Seed(seed)).unwrap();
             assert!((60.0..=100.0).contains(&spec.margin.length_mm));

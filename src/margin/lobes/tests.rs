@@ -141,8 +141,8 @@ fn a_set_valley_lies_where_equation_6_10_puts_it_with_its_tangents() {
         let way = way.normalize();
         let lower = DVec2::from_angle(-70.0_f64.to_radians()).rotate(way);
         let upper = DVec2::from_angle(30.0_f64.to_radians()).rotate(way);
-        assert!(down.dot(lower) > 0.999, "{i}: {down} {lower}");
-        assert!(up.dot(upper) > 0.999, "{i}: {up} {upper}");
+        assert!(down.dot(lower) > 0.998, "{i}: {down} {lower}");
+        assert!(up.dot(upper) > 0.998, "{i}: {up} {upper}");
     }
 }
 
@@ -213,7 +213,7 @@ fn lists_that_make_no_leaf_say_why() {
     let right = LobeRecord { side: LobeSide::Right, ..LobeRecord::default() };
     assert!(problem(vec![right.clone()]).contains("a side without lobes"));
     // One at the apex is a leaf, with or without others.
-    outline(&[apex.clone()]).unwrap();
+    outline(std::slice::from_ref(&apex)).unwrap();
     outline(&[right, apex]).unwrap();
 }
 

@@ -49,6 +49,17 @@ pub(crate) enum OutlineWord {
     Polygon,
 }
 
+impl OutlineWord {
+    pub(crate) fn kind(self) -> OutlineKind {
+        match self {
+            Self::Auto => OutlineKind::Auto,
+            Self::Sketch => OutlineKind::Sketch,
+            Self::Photo => OutlineKind::Photo,
+            Self::Polygon => OutlineKind::Polygon,
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct LeafArgs {
     /// A preset (`venation presets` lists them) or a TOML file.
@@ -101,7 +112,7 @@ pub(crate) struct LeafArgs {
     set: Vec<String>,
 }
 
-fn point(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn point(text: &str) -> Result<[f64; 2], String> {
     let wrong = || format!("`{text}` is not X,Y");
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| v.is_finite());
@@ -137,7 +148,7 @@ fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
     if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
 }
 
-fn read_document(leaf: &str) -> Result<Document, Failure> {
+pub(crate) fn read_document(leaf: &str) -> Result<Document, Failure> {
     if let Some(preset) = presets::find(leaf) {
         return Ok(preset.document()?);
     }
@@ -202,12 +213,7 @@ impl LeafArgs {
         document: &mut Document,
         context: &Context<'_>,
     ) -> Result<(), Failure> {
-        let kind = match self.outline_kind {
-            OutlineWord::Auto => OutlineKind::Auto,
-            OutlineWord::Sketch => OutlineKind::Sketch,
-            OutlineWord::Photo => OutlineKind::Photo,
-            OutlineWord::Polygon => OutlineKind::Polygon,
-        };
+        let kind = self.outline_kind.kind();
         // Any length will do: each leaf scales the outline to the length it draws.
         let options = OutlineOptions { kind, root: self.root, y_up: self.y_up, length_mm: 100.0 };
         let imported =

@@ -8,6 +8,7 @@
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
 pub mod curve;
+pub mod fit;
 mod landmarks;
 pub mod lobes;
 mod outline;

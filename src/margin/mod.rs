@@ -11,6 +11,7 @@ pub mod sketch;
 
 use glam::DVec2;
 
+use crate::geometry::segments::SegmentIndex;
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
 use parametric::SideSpec;
@@ -213,6 +214,13 @@ impl Margin {
     #[must_use]
     pub fn cuts(&self) -> &[Vec<DVec2>] {
         &self.cuts
+    }
+
+    /// The lines that no vein crosses: the outline and the cuts.
+    #[must_use]
+    pub fn lines(&self) -> SegmentIndex {
+        let cuts = self.cuts.iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
+        SegmentIndex::new(polygon::edges(&self.outline).chain(cuts).collect())
     }
 
     /// From base to apex (mm).

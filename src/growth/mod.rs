@@ -291,10 +291,7 @@ impl GrowingBlade {
         let made = if let Some(sweep) = &self.sweep {
             sweep.margin(&self.margin, scale.x)
         } else {
-            let grown = |line: &[DVec2]| line.iter().map(|p| *p * scale).collect::<Vec<_>>();
-            let cuts = self.margin.cuts().iter().map(|line| grown(line)).collect();
-            let outline = grown(self.margin.outline());
-            Margin::new(outline, self.margin.apex_index(), cuts, "change growth.type")
+            Margin::from_outline(self.margin.to_outline().scaled(scale), "change growth.type")
         };
         made.map_err(|source| GrowthError::Margin { step, source })
     }

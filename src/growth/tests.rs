@@ -66,3 +66,23 @@ fn a_start_after_the_end_is_an_error_with_its_key() {
     let error = GrowingBlade::new(ellipse(64), &late).expect_err("too late").to_string();
     assert!(error.contains("growth.start_step = 401"), "{error}");
 }
+
+#[test]
+fn landmarks_grow_with_the_blade() {
+    use crate::margin::{Landmark, LandmarkKind};
+    let mut outline = ellipse(64).to_outline();
+    let tip = LandmarkKind::LobeTip { origin: DVec2::new(0.0, 8.0) };
+    outline.landmarks.push(Landmark { vertex: 20, kind: tip });
+    let margin = Margin::from_outline(outline, "").expect("an ellipse");
+    for r#type in [GrowthType::Isotropic, GrowthType::Marginal] {
+        let spec = GrowthSpec { r#type, ..GrowthSpec::default() };
+        let blade = GrowingBlade::new(margin.clone(), &spec).expect("grows");
+        let young = blade.at(150).expect("a young blade");
+        let scale = blade.scale_at(150);
+        let [mark] = young.landmarks() else { panic!("{:?}", young.landmarks()) };
+        let at = young.outline()[mark.vertex];
+        assert!(at.distance(margin.outline()[20] * scale) < 1e-9, "{at}");
+        let origin = DVec2::new(0.0, 8.0) * scale;
+        assert_eq!(mark.kind, LandmarkKind::LobeTip { origin });
+    }
+}

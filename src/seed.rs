@@ -20,6 +20,8 @@ pub enum Stage {
     AuxinSources,
     /// How the guided veins vary.
     Guides,
+    /// How the fine veins bow.
+    Bows,
     /// Where the particles start.
     Particles,
     /// Where the speckles lie.
@@ -41,6 +43,7 @@ impl Stage {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
             Self::Guides => "stage/guides",
+            Self::Bows => "stage/bows",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",

@@ -19,6 +19,7 @@ pub mod sketch;
 
 use glam::DVec2;
 
+use crate::geometry::segments::SegmentIndex;
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
 pub use landmarks::{Landmark, LandmarkKind};
@@ -243,6 +244,13 @@ impl Margin {
     #[must_use]
     pub fn cuts(&self) -> &[Vec<DVec2>] {
         &self.cuts
+    }
+
+    /// The lines that no vein crosses: the outline and the cuts.
+    #[must_use]
+    pub fn lines(&self) -> SegmentIndex {
+        let cuts = self.cuts.iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
+        SegmentIndex::new(polygon::edges(&self.outline).chain(cuts).collect())
     }
 
     /// What stands on the margin (lobe tips, valleys, teeth), in the order of the vertices. Empty

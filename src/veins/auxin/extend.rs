@@ -25,10 +25,6 @@ const LEAST_PULL: f64 = 1.0 - 1e-9;
 /// run along it.
 const LONGEST_JOIN: f64 = 2.0;
 
-/// Where veins meet, the way round along other veins must be longer than this, in kill distances:
-/// below it both are one vein that passes on two sides of a source, and the loop would be a speck.
-const LEAST_WAY_ROUND: f64 = 2.0;
-
 /// What happens where a vein would cross another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
@@ -47,7 +43,7 @@ pub(super) struct Nodes {
     far: PointGrid,
     step_mm: f64,
     far_cell_mm: f64,
-    kill_mm: f64,
+    least_loop_mm: f64,
     web: Web,
     meeting: Meeting,
 }
@@ -75,7 +71,7 @@ impl Nodes {
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             far_cell_mm,
-            kill_mm: spec.kill_distance_mm,
+            least_loop_mm: spec.least_loop * spec.kill_distance_mm,
             web,
             meeting,
         };
@@ -279,7 +275,7 @@ impl Nodes {
 
     /// Whether two nodes are on one vein, or next to each other on two that have met.
     fn are_close(&self, a: NodeId, b: NodeId, metric: Metric) -> bool {
-        let limit = metric.length(LEAST_WAY_ROUND * self.kill_mm);
+        let limit = metric.length(self.least_loop_mm);
         let length = |a: NodeId, b: NodeId| {
             metric.distance_squared(self.position(a), self.position(b)).sqrt()
         };

@@ -180,6 +180,6 @@ fn end_free(
     nodes.end_free();
     let mut spec = spec.clone();
     let least = spec.node_step_mm / 2.0;
-    spec.kill_distance_mm = (spec.kill_distance_mm * spec.veinlet_scale).max(least);
+    spec.kill_distance_mm = (spec.kill_distance_mm * spec.veinlet_kill).max(least);
     sources.opened(&spec, blade, metric, nodes)
 }

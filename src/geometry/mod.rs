@@ -10,6 +10,7 @@ pub mod scatter;
 pub mod segment_grid;
 pub mod segments;
 pub mod sparse;
+pub mod z_order;
 
 pub use glam::DVec2;
 

@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 use venation::geometry::scatter::PolygonScatter;
+use venation::geometry::z_order::z_order;
 use venation::growth::GrowingBlade;
 use venation::seed::Rng;
 use venation::veins::{Algorithm, VeinSpec};
@@ -244,9 +245,11 @@ pub(crate) fn grow(
         }
         // Seed sources: those the margin has passed, and this step's darts.
         let scale = world.scale();
-        let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
+        let (mut born, rest): (Vec<DVec2>, Vec<DVec2>) =
             waiting.into_iter().partition(|&p| blade.is_inside(p, step));
         waiting = rest;
+        // They call in an order, and are born in that of place.
+        born.sort_by_key(|&p| z_order(blade.mature().bounds(), p));
         sources.extend(born.into_iter().map(|p| Source::new(p * scale)));
         if darts_fall {
             fraction += spec.spawn_rate * blade.scale_at(step).element_product();

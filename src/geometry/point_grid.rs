@@ -20,6 +20,7 @@ const FEW: usize = 24;
 pub struct PointGrid {
     bounds: Rect,
     cell: f64,
+    per_cell: f64,
     columns: usize,
     rows: usize,
     heads: Vec<u32>,
@@ -52,6 +53,7 @@ impl PointGrid {
         Self {
             bounds,
             cell,
+            per_cell: 1.0 / cell,
             columns,
             rows,
             heads: vec![NONE; columns * rows],
@@ -80,11 +82,11 @@ impl PointGrid {
     }
 
     fn column(&self, x: f64) -> usize {
-        (((x - self.bounds.min.x) / self.cell).max(0.0) as usize).min(self.columns - 1)
+        (((x - self.bounds.min.x) * self.per_cell).max(0.0) as usize).min(self.columns - 1)
     }
 
     fn row(&self, y: f64) -> usize {
-        (((y - self.bounds.min.y) / self.cell).max(0.0) as usize).min(self.rows - 1)
+        (((y - self.bounds.min.y) * self.per_cell).max(0.0) as usize).min(self.rows - 1)
     }
 
     fn home(&self, p: DVec2) -> usize {

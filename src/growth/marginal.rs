@@ -13,7 +13,7 @@ use glam::DVec2;
 use super::overlap;
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
-use crate::margin::{Margin, MarginError};
+use crate::margin::{Landmark, Margin, MarginError, Outline};
 
 /// One sector of the star hull: between two angles one edge is the farthest from the base.
 #[derive(Debug, Clone, Copy)]
@@ -83,8 +83,11 @@ impl Sweep {
     /// the base.
     pub(super) fn margin(&self, mature: &Margin, s: f64) -> Result<Margin, MarginError> {
         let hint = "use another growth.type, or growth.scale = 1";
-        let (outline, apex) = if self.plain {
-            (mature.outline().iter().map(|p| *p * s).collect(), mature.apex_index())
+        let mut whole = mature.to_outline();
+        // Cuts do not move: what the margin has not passed yet is missing.
+        whole.cuts.clear();
+        let outline = if self.plain {
+            whole.scaled(DVec2::splat(s))
         } else {
             let young: Vec<DVec2> = self.hull.iter().map(|p| *p * s).collect();
             // Start on the one that lies in the other: the hull where they leave the base together.
@@ -93,13 +96,23 @@ impl Sweep {
             } else {
                 overlap::common_part(mature.outline(), &young)
             };
-            overlap::with_apex(&outline)
+            let (points, apex) = overlap::with_apex(&outline);
+            // What the margin has reached stands where it will stay.
+            let reached = |mark: &Landmark| {
+                let at = whole.points[mark.vertex];
+                let vertex = points.iter().position(|p| *p == at)?;
+                Some(Landmark { vertex, ..*mark })
+            };
+            let landmarks = whole.landmarks.iter().filter_map(reached).collect();
+            Outline { points, apex, cuts: Vec::new(), landmarks }
         };
-        let bare = Margin::new(outline, apex, Vec::new(), hint)?;
-        // Cuts do not move: what the margin has not passed yet is missing.
+        let bare = Margin::from_outline(outline, hint)?;
+        if mature.cuts().is_empty() {
+            return Ok(bare);
+        }
         let inside = |p: DVec2| polygon::contains(bare.outline(), p);
         let cuts = mature.cuts().iter().flat_map(|line| runs_inside(line, inside)).collect();
-        Margin::new(bare.outline().to_vec(), bare.apex_index(), cuts, hint)
+        Margin::from_outline(Outline { cuts, ..bare.to_outline() }, hint)
     }
 }
 

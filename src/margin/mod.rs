@@ -3,7 +3,12 @@
 //! [`build`] makes a [`Margin`] from a [`MarginSpec`]: a parametric leaf ([`parametric`]) or a
 //! polygon in millimetres. Drawings, photographs and foreign polygons become such a polygon first
 //! ([`sketch`], [`silhouette`], [`placement`]); none of them opens a file.
+//!
+//! Each kind makes an [`Outline`]; [`Margin::from_outline`] checks it once. What the maker knows of
+//! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
+mod landmarks;
+mod outline;
 pub mod parametric;
 pub mod placement;
 pub mod silhouette;
@@ -13,6 +18,8 @@ use glam::DVec2;
 
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
+pub use landmarks::{Landmark, LandmarkKind};
+pub use outline::Outline;
 use parametric::SideSpec;
 
 words! {
@@ -54,11 +61,13 @@ parameters! {
 /// - Anticlockwise; the first vertex is the base, at the origin, and is not repeated at the end.
 /// - The apex is a vertex on the +y axis.
 /// - Cuts (slits inside the blade) are finite lines of two points or more, inside the outline.
+/// - Landmarks stand in the order of their vertices, at most one at each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Margin {
     outline: Vec<DVec2>,
     apex: usize,
     cuts: Vec<Vec<DVec2>>,
+    landmarks: Vec<Landmark>,
 }
 
 /// Why a margin could not be made.
@@ -152,43 +161,49 @@ impl Margin {
         cuts: Vec<Vec<DVec2>>,
         hint: &'static str,
     ) -> Result<Self, MarginError> {
-        if let Some(index) = outline.iter().position(|p| !p.is_finite()) {
+        Self::from_outline(Outline { points: outline, apex, cuts, landmarks: Vec::new() }, hint)
+    }
+
+    /// A margin from an outline with what stands on it. Merges vertices that stand too close (never
+    /// the base or the apex, landmarks only with each other) and refuses what it cannot guarantee.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn from_outline(mut outline: Outline, hint: &'static str) -> Result<Self, MarginError> {
+        if let Some(index) = outline.points.iter().position(|p| !p.is_finite()) {
             return Err(MarginError::NotFinite { index });
         }
-        let tip = outline.get(apex).copied().unwrap_or(DVec2::ZERO);
-        let at_base = outline.first().is_some_and(|p| p.length() < 1e-9);
+        let tip = outline.points.get(outline.apex).copied().unwrap_or(DVec2::ZERO);
+        let at_base = outline.points.first().is_some_and(|p| p.length() < 1e-9);
         if !at_base || tip.x.abs() > 1e-9 * tip.y.abs().max(1.0) || tip.y <= 0.0 {
             return Err(MarginError::NotPlaced);
         }
-        // Keep the apex: drop vertices that crowd it, never itself.
-        let crowded = |p: &DVec2| *p != tip && p.distance(tip) < Self::MIN_EDGE_MM;
-        let outline: Vec<DVec2> = outline.into_iter().filter(|p| !crowded(p)).collect();
-        let mut outline = polygon::without_short_edges(&outline, Self::MIN_EDGE_MM);
-        if outline.len() < Self::MIN_VERTICES {
+        outline = outline.spaced();
+        if outline.points.len() < Self::MIN_VERTICES {
             return Err(MarginError::TooFewPoints {
-                count: outline.len(),
+                count: outline.points.len(),
                 least: Self::MIN_VERTICES,
             });
         }
-        let area = polygon::signed_area(&outline);
+        let area = polygon::signed_area(&outline.points);
         if area.abs() < 1e-4 * tip.y * tip.y {
             return Err(MarginError::NoArea { area_mm2: area });
         }
-        if area < 0.0 {
-            outline[1..].reverse();
-        }
-        outline[0] = DVec2::ZERO;
-        if let Some(at) = polygon::self_crossing(&outline) {
+        outline.wound(area);
+        let Outline { mut points, apex, cuts, mut landmarks } = outline;
+        landmarks.sort_by_key(|mark| mark.vertex);
+        points[0] = DVec2::ZERO;
+        points[apex].x = 0.0;
+        if let Some(at) = polygon::self_crossing(&points) {
             return Err(MarginError::SelfCrossing { x: at.x, y: at.y, hint });
         }
-        let apex = outline.iter().position(|p| *p == tip).ok_or(MarginError::NotPlaced)?;
-        outline[apex].x = 0.0;
-        let outside = |p: &&DVec2| !p.is_finite() || !polygon::contains(&outline, **p);
+        let outside = |p: &&DVec2| !p.is_finite() || !polygon::contains(&points, **p);
         let cuts: Vec<Vec<DVec2>> = cuts.into_iter().filter(|line| line.len() > 1).collect();
         if let Some(p) = cuts.iter().flatten().find(outside) {
             return Err(MarginError::CutOutside { x: p.x, y: p.y });
         }
-        Ok(Self { outline, apex, cuts })
+        Ok(Self { outline: points, apex, cuts, landmarks })
     }
 
     /// The vertices, anticlockwise from the base.
@@ -215,6 +230,24 @@ impl Margin {
         &self.cuts
     }
 
+    /// What stands on the margin (lobe tips, valleys, teeth), in the order of the vertices. Empty
+    /// when the outline came as a polygon.
+    #[must_use]
+    pub fn landmarks(&self) -> &[Landmark] {
+        &self.landmarks
+    }
+
+    /// The same as an outline to change and check again.
+    #[must_use]
+    pub fn to_outline(&self) -> Outline {
+        Outline {
+            points: self.outline.clone(),
+            apex: self.apex,
+            cuts: self.cuts.clone(),
+            landmarks: self.landmarks.clone(),
+        }
+    }
+
     /// From base to apex (mm).
     #[must_use]
     pub fn length_mm(&self) -> f64 {
@@ -236,8 +269,11 @@ impl Margin {
     /// The first guarantee that does not hold, in words; `None` when all do. For tests.
     #[must_use]
     pub fn check(&self) -> Option<String> {
-        let rebuilt = Self::new(self.outline.clone(), self.apex, self.cuts.clone(), "");
-        match rebuilt {
+        let ordered = self.landmarks.windows(2).all(|pair| pair[0].vertex < pair[1].vertex);
+        if !ordered || self.landmarks.iter().any(|mark| mark.vertex >= self.outline.len()) {
+            return Some("landmarks are out of order".into());
+        }
+        match Self::from_outline(self.to_outline(), "") {
             Err(error) => Some(error.to_string()),
             Ok(same) if same != *self => Some("rebuilding the margin changes it".into()),
             Ok(_) => None,

@@ -30,9 +30,6 @@ pub(super) trait Callers {
     /// The calls of this step.
     fn calls(&self) -> &Calls;
 
-    /// The same, to take the called nodes.
-    fn calls_mut(&mut self) -> &mut Calls;
-
     /// Where a living source is.
     fn place(&self, source: u32) -> DVec2;
 
@@ -73,7 +70,7 @@ pub(super) trait Callers {
 
 /// The unit vector from a node to a source.
 pub(super) fn unit(node: DVec2, source: DVec2, metric: Metric) -> DVec2 {
-    let towards = (source - node) * metric.stretch;
+    let towards = metric.between(node, source);
     towards / towards.length_squared().sqrt()
 }
 

@@ -21,7 +21,7 @@ use super::NONE;
 use super::callers::{self, Callers, Ranges, unit};
 use super::calls::Calls;
 use super::extend::Nodes;
-use super::field::{Field, Hit};
+use super::field::Field;
 use super::neighbours::{Around, SECTORS};
 use super::open;
 use crate::growth::{GrowingBlade, Metric};
@@ -55,9 +55,10 @@ pub(super) struct Sources {
     free_tags: Vec<u32>,
     /// Sources to which a node has come within the kill distance, and those that wait.
     reached: Vec<u32>,
-    hits: Vec<Hit>,
     step_mm: f64,
     deforms: bool,
+    /// Distances may shrink, too: every source is looked after in every step.
+    warps: bool,
     convex: bool,
 }
 
@@ -70,9 +71,9 @@ impl Sources {
             tags: Vec::new(),
             free_tags: Vec::new(),
             reached: Vec::new(),
-            hits: Vec::new(),
             step_mm: spec.node_step_mm,
             deforms: blade.deforms(),
+            warps: blade.is_warped(),
             convex: blade.is_convex(),
         }
     }
@@ -140,7 +141,8 @@ impl Callers for Sources {
         let around = self.look_around(p, nodes, metric);
         let least2 = around.least2();
         let state = State { around, tag: NONE };
-        let id = self.field.add(p, around.most2(), least2.is_finite(), state);
+        let is_acting = least2.is_finite() || self.warps;
+        let id = self.field.add(p, around.most2(), is_acting, state);
         if least2 <= self.ranges.kill2(metric) {
             self.reached.push(id);
         }
@@ -165,7 +167,13 @@ impl Callers for Sources {
                 self.store(i, around);
             }
             let State { around, tag } = *self.field.state(i);
+            if self.warps && around.least2() <= kill2 && tag == NONE {
+                self.reached.push(source);
+            }
             if around.least2() > search2 {
+                if self.warps {
+                    return true;
+                }
                 // Distances only grow: those nodes will not matter again.
                 self.field.retire(i);
                 self.store(i, Around::EMPTY);
@@ -192,10 +200,6 @@ impl Callers for Sources {
         &self.calls
     }
 
-    fn calls_mut(&mut self) -> &mut Calls {
-        &mut self.calls
-    }
-
     fn place(&self, source: u32) -> DVec2 {
         self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
     }
@@ -209,9 +213,9 @@ impl Callers for Sources {
         nodes: &mut Nodes,
     ) -> Vec<u32> {
         let grown = nodes.len();
-        (before..grown).for_each(|node| self.offer(node as NodeId, metric, nodes));
+        self.offer(before, metric, nodes);
         let dead = self.settle_reached(blade, step, metric, nodes, true);
-        (grown..nodes.len()).for_each(|node| self.offer(node as NodeId, metric, nodes));
+        self.offer(grown, metric, nodes);
         dead
     }
 
@@ -220,7 +224,7 @@ impl Callers for Sources {
     }
 
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached {
-        let search2 = self.ranges.search2(blade.metric(blade.last_step()));
+        let search2 = self.ranges.search2(blade.frame(blade.last_step()).metric());
         callers::unreached(&self.field, blade, nodes, |slot| {
             let nearest = self.field.state(slot).around.nearest();
             nearest.filter(|&(distance2, _)| distance2 <= search2).map(|(_, node)| node)

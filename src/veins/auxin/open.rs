@@ -14,7 +14,7 @@ use super::callers::{self, Callers, Ranges, unit};
 use super::calls::Calls;
 use super::claims::{Claim, Sight};
 use super::extend::Nodes;
-use super::field::{DEAD, Field, Hit};
+use super::field::{DEAD, Field, Told};
 use super::NONE;
 use super::tiles::Tiles;
 use crate::growth::{GrowingBlade, Metric};
@@ -30,8 +30,9 @@ pub(super) struct Sources {
     doomed: Vec<u32>,
     /// Without a reach.
     tiles: Option<Tiles>,
-    hits: Vec<Hit>,
     deforms: bool,
+    /// Distances may shrink, too: every source is looked after in every step.
+    warps: bool,
     convex: bool,
 }
 
@@ -44,8 +45,8 @@ impl Sources {
             calls: Calls::default(),
             doomed: Vec::new(),
             tiles: ranges.are_unlimited().then(Tiles::default),
-            hits: Vec::new(),
             deforms: blade.deforms(),
+            warps: blade.is_warped(),
             convex: blade.is_convex(),
         }
     }
@@ -55,18 +56,33 @@ impl Sources {
         self.field.add_spent();
     }
 
+    /// Whether sources keep a bound on the distance of all nodes but the nearest.
+    fn bounds_others(&self) -> bool {
+        self.deforms && !self.warps
+    }
+
     /// Follows the nearest node of a source while the blade deforms.
     fn measure_again(&mut self, slot: usize, nodes: &Nodes, metric: Metric, search2: f64) {
         let p = self.field.place(slot);
-        let claim = self.field.state_mut(slot);
-        claim.near2 = metric.distance_squared(p, nodes.position(claim.node));
-        if claim.near2 >= claim.others2
-            && let Some(found) = nodes.nearest(p, metric, search2.max(claim.near2))
-        {
-            claim.set(found.distance2, found.id, found.others2);
-            let bound2 = claim.bound2(true);
-            self.field.set_bound2(slot, bound2);
+        let mut claim = *self.field.state(slot);
+        let limit2 = if self.warps {
+            search2
+        } else {
+            claim.near2 = metric.distance_squared(p, nodes.position(claim.node));
+            search2.max(claim.near2)
+        };
+        if self.warps || claim.near2 >= claim.others2 {
+            match nodes.nearest(p, metric, limit2) {
+                Some(found) => claim.set(found.distance2, found.id, found.others2),
+                None => claim.set(f64::INFINITY, NONE, search2),
+            }
         }
+        self.store(slot, claim);
+    }
+
+    fn store(&mut self, slot: usize, claim: Claim) {
+        *self.field.state_mut(slot) = claim;
+        self.field.set_bound2(slot, claim.bound2(self.bounds_others()));
     }
 
     /// Whether a source sees its nearest node.
@@ -83,18 +99,6 @@ impl Sources {
             }
         }
         claim.sight == Sight::Clear
-    }
-
-    /// One new node asks the sources around it.
-    fn offer_in_reach(&mut self, node: NodeId, at: DVec2, metric: Metric) {
-        let Self { field, ranges, hits, deforms, .. } = self;
-        let reach = metric.reach(ranges.search(metric));
-        let kill2 = ranges.kill2(metric);
-        hits.clear();
-        field.find(at, reach, ranges.search2(metric), metric, hits);
-        for &hit in hits.iter() {
-            field.tell(hit, |claim| claim.hear(node, hit.distance2, kill2, *deforms));
-        }
     }
 }
 
@@ -114,7 +118,8 @@ impl Callers for Sources {
         if let Some(nearest) = found {
             claim.set(nearest.distance2, nearest.id, nearest.others2);
         }
-        let id = self.field.add(p, claim.bound2(self.deforms), found.is_some(), claim);
+        let is_acting = found.is_some() || self.warps;
+        let id = self.field.add(p, claim.bound2(self.bounds_others()), is_acting, claim);
         if claim.near2 <= self.ranges.kill2(metric) {
             self.doomed.push(id);
         }
@@ -135,11 +140,13 @@ impl Callers for Sources {
             }
             let Claim { near2, node, .. } = *self.field.state(slot);
             if near2 > search2 {
+                if self.warps {
+                    return true;
+                }
                 self.field.retire(slot);
                 if self.deforms {
                     // Measured again when a new node comes.
-                    *self.field.state_mut(slot) = Claim::none(search2);
-                    self.field.set_bound2(slot, f64::INFINITY);
+                    self.store(slot, Claim::none(search2));
                 }
                 return false;
             }
@@ -158,10 +165,6 @@ impl Callers for Sources {
         &self.calls
     }
 
-    fn calls_mut(&mut self) -> &mut Calls {
-        &mut self.calls
-    }
-
     fn place(&self, source: u32) -> DVec2 {
         self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
     }
@@ -169,7 +172,8 @@ impl Callers for Sources {
     /// Lets the nodes from `before` on take over the sources they are nearest to, and removes every
     /// source within the kill distance of a node.
     ///
-    /// Only a new node can kill, or an old one a newborn source: distances never shrink.
+    /// Only a new node can kill, or an old one a newborn source: distances never shrink, unless rates
+    /// of growth differ from place to place.
     fn take_over(
         &mut self,
         before: usize,
@@ -179,22 +183,29 @@ impl Callers for Sources {
         nodes: &mut Nodes,
     ) -> Vec<u32> {
         let fresh = &nodes.positions()[before..];
-        let (kill2, deforms) = (self.ranges.kill2(metric), self.deforms);
-        if fresh.is_empty() {
-            // Nobody is taken over.
-        } else if let Some(tiles) = &mut self.tiles {
-            tiles.offer(&mut self.field, fresh, metric, |claim, found| {
-                let bound2 =
-                    claim.hear((before + found.tip) as NodeId, found.distance2, kill2, deforms);
+        let (kill2, bounds_others) = (self.ranges.kill2(metric), self.bounds_others());
+        if let Some(tiles) = &mut self.tiles {
+            tiles.offer(&mut self.field, fresh, metric, bounds_others, |claim, found| {
+                let node = (before + found.tip) as NodeId;
+                let bound2 = claim.hear(node, found.distance2, kill2, bounds_others);
                 claim.others2 = claim.others2.min(found.others2);
-                if bound2 == DEAD { DEAD } else { claim.bound2(deforms) }
+                if bound2 == DEAD { DEAD } else { claim.bound2(bounds_others) }
             });
         } else {
-            for (i, &at) in fresh.iter().enumerate() {
-                self.offer_in_reach((before + i) as NodeId, at, metric);
-            }
+            let search = self.ranges.search(metric);
+            self.field.offer(before as NodeId, fresh, search, metric, |hit, _, claim| Told {
+                bound2: claim.hear(hit.node, hit.distance2, kill2, bounds_others),
+                is_marked: false,
+            });
         }
-        for source in self.doomed.drain(..) {
+        let mut reached = std::mem::take(&mut self.doomed);
+        if self.warps {
+            let has_come = |id: &u32| {
+                self.field.slot(*id).is_some_and(|slot| self.field.state(slot).near2 <= kill2)
+            };
+            reached.extend(self.field.acting().iter().copied().filter(has_come));
+        }
+        for source in reached {
             if let Some(slot) = self.field.slot(source) {
                 self.field.kill(slot);
             }

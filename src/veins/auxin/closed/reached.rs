@@ -120,6 +120,14 @@ impl Sources {
         metric: Metric,
         nodes: &mut Nodes,
     ) -> Vec<u32> {
+        if self.deforms {
+            // The blade may have grown since its neighbours were looked up.
+            for source in self.reached.clone() {
+                let Some(i) = self.field.slot(source) else { continue };
+                let around = self.look_around(self.field.place(i), nodes, metric);
+                self.store(i, around);
+            }
+        }
         self.settle_reached(blade, step, metric, nodes, false)
     }
 }

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::super::NONE;
 use super::super::extend::Nodes;
 use super::super::neighbours::Around;
+use super::super::field::{Hit, Told};
 use super::{Sources, State};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
@@ -15,14 +16,13 @@ impl Sources {
         let search = self.ranges.search(metric);
         let bounds = self.field.bounds();
         let mut around = Around::EMPTY;
-        let (low, high) =
-            ((bounds.min - s) * metric.stretch, (bounds.max - s) * metric.stretch);
-        let stretch = metric.stretch.min_element();
+        let (low, high) = metric.corners_from(s, bounds);
         nodes.grid().for_each_outwards(
             &mut around,
             s,
             |around, clear| {
-                clear * stretch <= search && !around.is_settled(clear * stretch, low, high)
+                let clear = metric.clearance(s, clear);
+                clear <= search && !around.is_settled(clear, low, high)
             },
             |around, node, p| {
                 let distance2 = metric.distance_squared(s, p);
@@ -39,23 +39,18 @@ impl Sources {
         self.field.set_bound2(i, around.most2());
     }
 
-    /// Tells the sources around of a new node.
-    pub(super) fn offer(&mut self, node: NodeId, metric: Metric, nodes: &Nodes) {
-        let p = nodes.position(node);
-        let Self { field, ranges, hits, reached, .. } = self;
-        let kill2 = ranges.kill2(metric);
-        hits.clear();
-        field.find(p, metric.reach(ranges.search(metric)), ranges.search2(metric), metric, hits);
-        for &hit in hits.iter() {
-            let (id, s) = field.id_and_place(hit.slot as usize);
-            let near = hit.distance2 <= kill2;
-            field.tell(hit, |State { around, tag }| {
-                around.offer(s, node, p, hit.distance2, nodes, metric);
-                if near && *tag == NONE {
-                    reached.push(id);
-                }
-                around.most2()
-            });
-        }
+    /// Tells the sources around of the nodes from `before` on.
+    pub(super) fn offer(&mut self, before: usize, metric: Metric, nodes: &Nodes) {
+        let kill2 = self.ranges.kill2(metric);
+        let search = self.ranges.search(metric);
+        let hear = |hit: Hit, s: DVec2, state: &mut State| {
+            let p = nodes.position(hit.node);
+            state.around.offer(s, hit.node, p, hit.distance2, nodes, metric);
+            let is_marked = hit.distance2 <= kill2 && state.tag == NONE;
+            Told { bound2: state.around.most2(), is_marked }
+        };
+        let fresh = &nodes.positions()[before..];
+        let reached = self.field.offer(before as NodeId, fresh, search, metric, hear);
+        self.reached.extend(reached);
     }
 }

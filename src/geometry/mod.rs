@@ -6,6 +6,7 @@ pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;
 pub mod polygon;
+mod rings;
 pub mod scatter;
 pub mod segment_grid;
 pub mod segments;

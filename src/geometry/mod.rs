@@ -8,10 +8,12 @@ pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;
 pub mod polygon;
+mod rings;
 pub mod scatter;
 pub mod segment_grid;
 pub mod segments;
 pub mod sparse;
+pub mod z_order;
 
 pub use glam::DVec2;
 

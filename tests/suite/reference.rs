@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 use venation::geometry::scatter::PolygonScatter;
+use venation::geometry::z_order::z_order;
 use venation::growth::{self, GrowingBlade};
 use venation::seed::Rng;
 use venation::veins::{Algorithm, VeinSpec};
@@ -274,9 +275,11 @@ pub(crate) fn grow(
             }
         }
         // Seed sources: those the margin has passed, and this step's darts.
-        let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
+        let (mut born, rest): (Vec<DVec2>, Vec<DVec2>) =
             waiting.into_iter().partition(|&p| blade.is_inside(p, step));
         waiting = rest;
+        // They call in an order, and are born in that of place.
+        born.sort_by_key(|&p| z_order(blade.mature().bounds(), p));
         sources.extend(born.into_iter().map(|p| Source::new(world.shown(p))));
         if darts_fall {
             fraction += spec.spawn_rate * blade.greatest_area_scale(step);

@@ -181,8 +181,8 @@ impl Nodes {
         step: u64,
         metric: Metric,
     ) {
-        let mut pull = calls.pull(node);
-        let mut left = calls.count(node);
+        let mut pull = calls.calls().pull(node);
+        let mut left = calls.calls().count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
             let units = calls.units(node, self, metric);
             let mut first = 0;

@@ -13,12 +13,13 @@
 //! Lengths in the settings are millimetres of the blade at the step in question.
 
 mod callers;
+mod calls;
 mod claims;
 mod closed;
 mod extend;
+mod field;
 mod neighbours;
 mod open;
-mod source_index;
 mod sources;
 mod tiles;
 mod web;
@@ -31,6 +32,9 @@ use crate::seed::Rng;
 use callers::Callers;
 use extend::{Meeting, Nodes};
 use sources::Supply;
+
+/// No node, no source.
+const NONE: u32 = u32::MAX;
 
 /// What grew.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,8 +86,8 @@ pub fn grow(
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
-    let mut open = open::Calls::new(spec, blade);
-    let mut closed = is_closed.then(|| closed::Calls::new(spec, blade));
+    let mut open = open::Sources::new(spec, blade);
+    let mut closed = is_closed.then(|| closed::Sources::new(spec, blade));
     // Full size: nothing changes any more once a step has changed nothing.
     let full_size = blade.is_full_size();
     let mut stands_still = false;
@@ -113,10 +117,10 @@ pub fn grow(
         // Seed new sources where the blade has room.
         supply.seed(step, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.
-        let called = calls.call(blade, step, metric, &nodes);
+        calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
-        for node in called {
+        for node in calls.calls().nodes() {
             nodes.extend(node, calls, blade, step, metric);
         }
         if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
@@ -167,13 +171,13 @@ pub fn grow(
 /// Turns closed venation into open: what has come to a source meets, and the sources that are left
 /// call their nearest node only.
 fn end_free(
-    mut sources: closed::Calls,
+    mut sources: closed::Sources,
     spec: &VeinSpec,
     blade: &GrowingBlade,
     step: u64,
     nodes: &mut Nodes,
     supply: &mut Supply<'_>,
-) -> open::Calls {
+) -> open::Sources {
     let frame = blade.frame(step);
     let metric = frame.metric();
     supply.forget(&sources.settle(blade, step, metric, nodes));

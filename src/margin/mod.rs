@@ -7,6 +7,7 @@
 //! Each kind makes an [`Outline`]; [`Margin::from_outline`] checks it once. What the maker knows of
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
+pub mod detail;
 mod landmarks;
 mod outline;
 pub mod parametric;
@@ -18,6 +19,8 @@ use glam::DVec2;
 
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
+use crate::seed::Seed;
+use detail::{RoughnessSpec, TeethSpec, WaveSpec};
 pub use landmarks::{Landmark, LandmarkKind};
 pub use outline::Outline;
 use parametric::SideSpec;
@@ -45,6 +48,12 @@ parameters! {
         left: group(SideSpec, SideSpec::default()),
         /// How far the left side is its own: 1 as given, 0 the mirror of the right side.
         asymmetry: number(1.0, 0.0..=1.0, ""),
+        /// Teeth along the margin.
+        teeth: group(TeethSpec, TeethSpec::default()),
+        /// Waves of the margin.
+        waves: group(WaveSpec, WaveSpec::default()),
+        /// Fine unevenness of the margin.
+        roughness: group(RoughnessSpec, RoughnessSpec::default()),
         /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y; scaled to `length_mm`.
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.
@@ -281,12 +290,26 @@ impl Margin {
     }
 }
 
-/// The margin of a leaf.
+/// The margin of a leaf; `seed` draws what is irregular about its teeth, waves and roughness.
 ///
 /// # Errors
 ///
 /// [`MarginError`] names the key, the value and what to change.
-pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
+pub fn build(spec: &MarginSpec, seed: Seed) -> Result<Margin, MarginError> {
+    let plain = entire(spec)?;
+    if detail::is_plain(spec) {
+        return Ok(plain);
+    }
+    let hint = "lower margin.teeth.depth, margin.waves.height or margin.roughness.height_mm";
+    Margin::from_outline(detail::set(&plain.to_outline(), spec, seed)?, hint)
+}
+
+/// The margin without teeth, waves and roughness.
+///
+/// # Errors
+///
+/// As [`build`].
+pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
     match spec.kind {
         MarginKind::Unilobed => parametric::unilobed(spec),
         MarginKind::Polygon => {

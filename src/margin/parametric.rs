@@ -42,7 +42,7 @@ parameters! {
 
 /// How far the polygon may stray from the curve, in lengths of the blade: a sixth of a texel on a
 /// blade 8192 texels long.
-const TOLERANCE: f64 = 2e-5;
+pub(super) const TOLERANCE: f64 = 2e-5;
 
 impl SideSpec {
     /// This side mixed with `other`: this one at `share` 0, the other at 1.

@@ -8,6 +8,7 @@ mod sample_leaf;
 
 use venation::observer::Silent;
 use venation::seed::Seed;
+use venation::texture::map::{MapKind, MapSet};
 use venation::texture::petiole::PetioleSpec;
 use venation::texture::pigment::ColourSpec;
 use venation::texture::relief::ReliefSpec;
@@ -30,6 +31,12 @@ fn both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
             petiole: &petiole,
             colour: &colour,
             relief: &relief,
+            maps: MapSet::of(&[
+                MapKind::BaseColour,
+                MapKind::Height,
+                MapKind::Normal,
+                MapKind::Orm,
+            ]),
             default_speckles: 6,
         };
         paint(&settings, &margin, &veins, Seed(3), &mut Silent)

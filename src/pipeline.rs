@@ -6,6 +6,7 @@ use crate::margin::{self, Margin};
 use crate::observer::Observer;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
+use crate::texture::map::{MapKind, MapSet};
 use crate::texture::{self, Paint, TextureSet};
 use crate::veins::{self, Venation};
 
@@ -59,6 +60,7 @@ pub fn paint(
         petiole: &spec.petiole,
         colour: &spec.colour,
         relief: &spec.relief,
+        maps: MapSet::of(&MapKind::list(&spec.output.maps)?),
         // A tenth of the auxin spawn rate (Foster, appendix B.3).
         default_speckles: (spec.veins.spawn_rate / 10.0).round() as u64,
     };

@@ -12,8 +12,12 @@ use crate::veins::VeinSpec;
 parameters! {
     /// What is written of a leaf.
     pub struct OutputSpec {
-        /// Maps to write of each side: some of basecolor, opacity, height, normal, bump; or all, or none.
-        maps: text("basecolor,opacity,height,normal"),
+        /// Maps to write of each side: some of basecolor, opacity, normal, height, roughness,
+        /// ambientocclusion, orm, translucency, thickness, veinmask, veinorder, bump; or all, or none.
+        maps: text(
+            "basecolor,opacity,normal,height,roughness,ambientocclusion,orm,translucency,thickness,\
+             veinmask,veinorder"
+        ),
         /// Other files to write: some of obj, svg, json, graphml, csv; or all, or none.
         formats: text("obj"),
     }

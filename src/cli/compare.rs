@@ -14,6 +14,7 @@ use venation::pipeline::{self, Grown};
 use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
+use venation::texture::map::MapKind;
 use venation::veins::metrics::VeinMetrics;
 
 use super::leaf_args::{self, LeafArgs};
@@ -106,6 +107,7 @@ const LINES_PX: usize = 420;
 
 fn cell(document: &Document, case: Case, seed: u64, shown: bool) -> Result<Cell, Failure> {
     let mut spec = leaf_args::resolve(document, seed)?;
+    spec.output.maps = MapKind::BaseColour.word().into();
     case.apply(&mut spec)?;
     let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
     let metrics = VeinMetrics::of(&grown.venation, &grown.margin);

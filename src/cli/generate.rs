@@ -27,8 +27,9 @@ Examples:
   venation generate out/leaf.toml -o again                        the same leaf, byte for byte
 
 Settings: every key of `venation presets show beech` takes a value or a range; each leaf draws its own.
-A folder holds NAME_BaseColor.png, NAME_Opacity.png, NAME_Height.png (16 bit), NAME_Normal.png (OpenGL),
-the same of the underside in back/, NAME.obj and NAME.mtl, leaf.toml and manifest.json.")]
+A folder holds NAME_BaseColor.png, _Opacity, _Normal (OpenGL), _Height (16 bit), _Roughness,
+_AmbientOcclusion, _ORM, _Translucency, _Thickness, _VeinMask and _VeinOrder, the same of the underside
+in back/, NAME.obj and NAME.mtl, leaf.toml and manifest.json.")]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
@@ -38,8 +39,9 @@ pub(crate) struct Args {
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
-    /// Maps to write: basecolor, opacity, height, normal, bump; all or none [default: the file's, else
-    /// basecolor,opacity,height,normal].
+    /// Maps to write: basecolor, opacity, normal, height, roughness, ambientocclusion (ao), orm,
+    /// translucency, thickness, veinmask, veinorder, bump; all or none [default: the file's, else all
+    /// but bump].
     #[arg(long, value_name = "LIST")]
     maps: Option<String>,
     /// Other files to write: obj, svg, json, graphml, csv; all or none [default: the file's, else obj].
@@ -130,7 +132,7 @@ fn jobs(args: &Args, document: &Document) -> Result<Vec<Job>, Failure> {
         let root = args.out.clone().unwrap_or_else(|| PathBuf::from(&spec.name));
         let folder = if single { root } else { root.join(format!("{}_s{seed:04}", spec.name)) };
         let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
-        let maps = words("output.maps", &spec.output.maps, MapKind::ALL, MapKind::word)?;
+        let maps = MapKind::list(&spec.output.maps).map_err(venation::error::Error::from)?;
         let all = FormatKind::ALL;
         let formats = words("output.formats", &spec.output.formats, all, FormatKind::word)?;
         Ok(Job { seed, spec, folder, toml, maps, formats })

@@ -9,103 +9,34 @@
 //! - `pHYs` gives the true size, since leaves are life-size objects.
 //! - The settings travel in text chunks, without a time stamp: same leaf, same bytes.
 
-use png::{BitDepth, ColorType, DeflateCompression, Filter};
-use rayon::prelude::*;
-
-use crate::parameter::words;
 use crate::raster::Grid;
 use crate::texture::SideMaps;
+use crate::texture::map::{Channels, MapKind};
+use png::{BitDepth, ColorType, DeflateCompression, Filter};
 
-words! {
-    /// A map of one side of the blade.
-    pub enum MapKind {
-        /// Colour and coverage.
-        BaseColour = "basecolor",
-        /// Coverage alone.
-        Opacity = "opacity",
-        /// Height.
-        Height = "height",
-        /// Normals.
-        Normal = "normal",
-        /// Foster's bump map.
-        Bump = "bump",
-    }
+/// A map of one side as a PNG.
+#[must_use]
+pub fn map_png(map: MapKind, maps: &SideMaps, caption: &Caption<'_>) -> Vec<u8> {
+    encode(&maps.base_colour, &maps.samples(map), &layout(map), caption)
 }
 
-impl MapKind {
-    /// The maps that are written unless others are asked for.
-    pub const DEFAULT: &'static [Self] =
-        &[Self::BaseColour, Self::Opacity, Self::Height, Self::Normal];
-
-    /// The end of the file name: other programs sort maps by these words.
-    #[must_use]
-    pub const fn suffix(self) -> &'static str {
-        match self {
-            Self::BaseColour => "BaseColor",
-            Self::Opacity => "Opacity",
-            Self::Height => "Height",
-            Self::Normal => "Normal",
-            Self::Bump => "Bump",
-        }
-    }
-
-    /// What the values mean, for people.
-    #[must_use]
-    pub const fn meaning(self) -> &'static str {
-        match self {
-            Self::BaseColour => {
-                "colour without light or shadow; alpha is coverage, straight; colour goes on under \
-                 alpha 0"
-            }
-            Self::Opacity => "coverage: 0 outside, 1 inside; grey and alpha are equal",
-            Self::Height => {
-                "height: 0 lowest, 65535 highest, apart by height_range_mm; plain \
-                             blade in the middle"
-            }
-            Self::Normal => "normal in tangent space, OpenGL (+y up the picture)",
-            Self::Bump => "height in the red channel, plain blade at 128",
-        }
-    }
-
-    /// The channels of a pixel, in words.
-    #[must_use]
-    pub const fn channels(self) -> &'static str {
-        match self {
-            Self::BaseColour => "rgba",
-            Self::Opacity => "grey+alpha",
-            Self::Height => "grey",
-            Self::Normal | Self::Bump => "rgb",
-        }
-    }
-
-    /// Bits of a channel.
-    #[must_use]
-    pub const fn bits(self) -> u8 {
-        match self {
-            Self::Height => 16,
-            _ => 8,
-        }
-    }
-
-    /// `sRGB` for colours, `linear` for data that no colour profile may touch.
-    #[must_use]
-    pub const fn colour_space(self) -> &'static str {
-        match self {
-            Self::BaseColour => "sRGB",
-            _ => "linear",
-        }
-    }
-
-    /// This map of one side as a PNG.
-    #[must_use]
-    pub fn encode(self, maps: &SideMaps, caption: &Caption<'_>) -> Vec<u8> {
-        match self {
-            Self::BaseColour => colour_png(&maps.base_colour, caption),
-            Self::Opacity => opacity_png(&maps.base_colour, caption),
-            Self::Height => height_png(&maps.height, caption),
-            Self::Normal => normal_png(&maps.normal, caption),
-            Self::Bump => bump_png(&maps.bump, caption),
-        }
+/// How a map is packed.
+fn layout(map: MapKind) -> Layout {
+    let packing = match map {
+        MapKind::BaseColour | MapKind::Translucency | MapKind::Orm | MapKind::Normal => COLOUR,
+        MapKind::Height => HEIGHT,
+        _ => OPACITY,
+    };
+    Layout {
+        colour: match map.channels() {
+            Channels::Grey => ColorType::Grayscale,
+            Channels::GreyAlpha => ColorType::GrayscaleAlpha,
+            Channels::Rgb => ColorType::Rgb,
+            Channels::Rgba => ColorType::Rgba,
+        },
+        depth: if map.bits() == 16 { BitDepth::Sixteen } else { BitDepth::Eight },
+        srgb: map.colour_space() == "sRGB",
+        ..packing
     }
 }
 
@@ -122,31 +53,6 @@ pub struct Caption<'a> {
 #[must_use]
 pub fn colour_png(picture: &Grid<[u8; 4]>, caption: &Caption<'_>) -> Vec<u8> {
     encode(picture, picture.values().as_flattened(), &COLOUR, caption)
-}
-
-/// The alpha of a picture as grey and as alpha: some programs take a mask from one, some from the
-/// other, and a mask with both is cut out right everywhere.
-#[must_use]
-pub fn opacity_png(picture: &Grid<[u8; 4]>, caption: &Caption<'_>) -> Vec<u8> {
-    encode(picture, &samples(picture, |&[.., alpha]| [alpha, alpha]), &OPACITY, caption)
-}
-
-/// 16-bit grey data.
-#[must_use]
-pub fn height_png(heights: &Grid<u16>, caption: &Caption<'_>) -> Vec<u8> {
-    encode(heights, &samples(heights, |height| height.to_be_bytes()), &HEIGHT, caption)
-}
-
-/// RGB data.
-#[must_use]
-pub fn normal_png(normals: &Grid<[u8; 3]>, caption: &Caption<'_>) -> Vec<u8> {
-    encode(normals, normals.values().as_flattened(), &NORMAL, caption)
-}
-
-/// Grey data in the red channel of RGB, as Foster's bump maps have it.
-#[must_use]
-pub fn bump_png(heights: &Grid<u8>, caption: &Caption<'_>) -> Vec<u8> {
-    encode(heights, &samples(heights, |&height| [height, 0, 0]), &BUMP, caption)
 }
 
 /// How samples lie in a file, what they are, and how they are packed.
@@ -192,17 +98,6 @@ const HEIGHT: Layout = Layout {
     compression: DeflateCompression::FdeflateUltraFast,
     filter: Filter::Paeth,
 };
-
-const NORMAL: Layout = Layout { colour: ColorType::Rgb, srgb: false, ..COLOUR };
-
-const BUMP: Layout = Layout { colour: ColorType::Rgb, ..OPACITY };
-
-fn samples<T: Sync, const N: usize>(
-    grid: &Grid<T>,
-    bytes: impl Fn(&T) -> [u8; N] + Sync + Send,
-) -> Vec<u8> {
-    grid.values().par_iter().map(bytes).collect::<Vec<_>>().into_flattened()
-}
 
 /// # Panics
 ///

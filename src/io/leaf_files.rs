@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::image::{Caption, MapKind};
+use super::image::{Caption, map_png};
 use super::manifest::{FileRecord, Manifest, SideMapping};
 use super::tables::Table;
 use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
@@ -11,6 +11,7 @@ use super::{file_stem, graph, graphml, obj, svg};
 use crate::margin::Margin;
 use crate::seed::Seed;
 use crate::texture::TextureSet;
+use crate::texture::map::MapKind;
 use crate::veins::Venation;
 
 /// A leaf and how it is to be written.
@@ -174,7 +175,7 @@ impl Content {
             map: map.map(|map| map.word().to_owned()),
             meaning: self.meaning().to_owned(),
             side: picture.map(|(side, _)| side.word().to_owned()),
-            channels: map.map(|map| map.channels().to_owned()),
+            channels: map.map(|map| map.channels().word().to_owned()),
             bits: map.map(MapKind::bits),
             colour_space: map.map(|map| map.colour_space().to_owned()),
             width: map.map(|_| leaf.textures.front.base_colour.width()),
@@ -210,7 +211,7 @@ impl LeafFiles<'_> {
         .chain(settings)
         .collect();
         let pixels_per_mm = self.textures.frame.pixels_per_mm(maps.base_colour.width());
-        map.encode(maps, &Caption { pixels_per_mm: Some(pixels_per_mm), texts: &texts })
+        map_png(map, maps, &Caption { pixels_per_mm: Some(pixels_per_mm), texts: &texts })
     }
 
     fn manifest(&self, files: Vec<FileRecord>) -> Manifest {
@@ -225,6 +226,7 @@ impl LeafFiles<'_> {
             length_mm: graph::rounded(self.margin.length_mm()),
             area_mm2: graph::rounded(self.margin.area_mm2()),
             height_range_mm: graph::rounded(self.textures.height_range_mm),
+            thickness_range_mm: graph::rounded(self.textures.thickness_range_mm),
             petiole_pivot: uv_from_mm.place(self.textures.petiole_end),
             base: uv_from_mm.place(self.margin.outline()[0]),
             apex: uv_from_mm.place(self.margin.apex()),

@@ -31,6 +31,8 @@ pub struct Manifest {
     pub area_mm2: f64,
     /// Height of the highest over the lowest value of the height maps (mm).
     pub height_range_mm: f64,
+    /// Thickness that the greatest value of the thickness maps stands for (mm).
+    pub thickness_range_mm: f64,
     /// Where the leaf hangs on its stem: the far end of the petiole.
     pub petiole_pivot: Place,
     /// Where the blade begins.

@@ -20,7 +20,7 @@ pub mod write;
 use std::path::{Path, PathBuf};
 
 use crate::parameter::words;
-pub use image::MapKind;
+pub use crate::texture::map::MapKind;
 pub use leaf_files::{LeafFiles, encode_leaf, file_names};
 
 /// The program and its version, as every file names its maker.

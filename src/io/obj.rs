@@ -16,7 +16,7 @@
 
 use std::fmt::Write as _;
 
-use super::image::MapKind;
+use crate::texture::map::MapKind;
 use crate::units::TextureFrame;
 
 /// How far behind the front sheet the back sheet lies, as a share of the side. In one plane the two

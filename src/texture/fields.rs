@@ -18,6 +18,9 @@ pub(super) use super::guide::Place;
 /// texel falls into dashes; at 1 everything is soft.
 const LEAST_HALF_PX: f32 = 0.7;
 
+/// A vein's label reaches at least so far from its axis (px): half a texel's diagonal leaves no gap.
+const LEAST_LABEL_PX: f32 = 0.71;
+
 /// A groove reaches this many radii from the axis of its vein.
 const GROOVE_RADII: f32 = 2.6;
 
@@ -35,6 +38,7 @@ const TIP: f64 = 0.35;
 #[derive(Debug)]
 pub(super) struct Strokes {
     capsules: Vec<Capsule>,
+    orders: Vec<u8>,
     pixels_per_mm: f32,
 }
 
@@ -49,6 +53,8 @@ pub(super) struct VeinAt {
     pub dome: f32,
     /// Depth of a wide smooth groove along the veins (mm).
     pub groove: f32,
+    /// Order of the vein here, 0 for none; of several the lowest.
+    pub order: u8,
 }
 
 impl Strokes {
@@ -75,21 +81,27 @@ impl Strokes {
             let thinner = radius(a).min(radius(b)) as f32;
             Capsule { a: at(a), b: at(b), radius_a: thinner, radius_b: thinner }
         });
-        Self { capsules: grown.chain(joined).collect(), pixels_per_mm: pixels_per_mm as f32 }
+        let edges = venation.graph().edges().map(|(_, child)| child);
+        let loops = venation.graph().joins().iter().map(|&(_, b)| b);
+        Self {
+            capsules: grown.chain(joined).collect(),
+            orders: edges.chain(loops).map(|node| venation.orders()[node as usize]).collect(),
+            pixels_per_mm: pixels_per_mm as f32,
+        }
     }
 
     /// The veins over some rows of the texture, row by row.
     pub(super) fn rows(&self, width: usize, rows: Range<usize>) -> Vec<VeinAt> {
         let mut texels = vec![VeinAt::default(); width * rows.len()];
         let mm = 1.0 / self.pixels_per_mm;
-        for capsule in &self.capsules {
+        for (capsule, &order) in self.capsules.iter().zip(&self.orders) {
             let reach = (GROOVE_RADII * capsule.widest()).max(capsule.widest() + LEAST_HALF_PX);
             let [columns, lines] = capsule.pixels(reach, width, rows.clone());
             for y in lines {
                 let row = &mut texels[(y - rows.start) * width..][..width];
                 for x in columns.clone() {
                     let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                    row[x].add(capsule, centre, mm);
+                    row[x].add(capsule, order, centre, mm);
                 }
             }
         }
@@ -140,7 +152,7 @@ pub(super) const BRANCH_FLARE: f64 = 1.3;
 
 impl VeinAt {
     #[inline]
-    fn add(&mut self, capsule: &Capsule, centre: Vec2, mm: f32) {
+    fn add(&mut self, capsule: &Capsule, order: u8, centre: Vec2, mm: f32) {
         let (distance2, t) = capsule.nearest(centre);
         let radius = capsule.radius(t);
         let radius2 = radius * radius;
@@ -159,6 +171,11 @@ impl VeinAt {
         let shows = |cover: f32, radius: f32| cover * radius / (radius + SHOWS_MM);
         if shows(cover, radius_mm) > shows(self.cover, self.radius) {
             (self.cover, self.radius) = (cover, radius_mm);
+        }
+        // No finer than the texels, so that a label never falls into dashes.
+        let labelled = radius.max(LEAST_LABEL_PX);
+        if distance2 < labelled * labelled && (self.order == 0 || order < self.order) {
+            self.order = order;
         }
         if distance2 < radius2 {
             self.dome = self.dome.max((radius2 - distance2).sqrt() * mm);

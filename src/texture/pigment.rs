@@ -10,6 +10,7 @@
 
 use super::fields::{Place, VeinAt};
 use super::petiole::StalkAt;
+use super::texel::Shade;
 use super::tissue::smooth;
 use crate::parameter::{parameters, words};
 use crate::raster::color::Tint;
@@ -176,9 +177,17 @@ impl Pigments {
         }
     }
 
+    /// What is seen of the blade, and through it.
+    #[inline]
+    pub(super) fn blade(&self, tissue: &Tissue) -> Shade {
+        let tint = self.tint(tissue);
+        let vein = tissue.vein.cover * tissue.vein.radius / (tissue.vein.radius + 0.12);
+        shade(tint, 0.92 - 0.6 * vein)
+    }
+
     /// The colour of the blade.
     #[inline]
-    pub(super) fn blade(&self, tissue: &Tissue) -> Tint {
+    fn tint(&self, tissue: &Tissue) -> Tint {
         let Tissue { place, vein, lines, tones, grain, from_base } = tissue;
         let [broad, middle, fine] = place.noise;
         let m = self.mottle;
@@ -236,7 +245,7 @@ impl Pigments {
 
     /// The colour of the petiole; it is the midrib's at the blade and browner at the stem.
     #[inline]
-    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Tint {
+    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Shade {
         let round = stalk.dome / stalk.radius.max(1e-6);
         let blade = 1.0 - smooth(0.0, 2.0 * self.petiole_reach, stalk.along);
         let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));
@@ -244,6 +253,18 @@ impl Pigments {
         tint.hue -= 18.0 * stem;
         tint.value *=
             (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.2 * self.mottle * grain);
-        tint
+        shade(tint, 0.3)
     }
+}
+
+/// A colour chosen by hand lets light of its own hue through: yellower, more saturated, and `share`
+/// as bright.
+#[inline]
+fn shade(tint: Tint, share: f32) -> Shade {
+    let through = Tint {
+        hue: tint.hue + 0.25 * (60.0 - tint.hue).clamp(-40.0, 0.0),
+        saturation: (1.45 * tint.saturation).min(1.0),
+        value: tint.value * share,
+    };
+    Shade { reflected: tint.srgb(), through: through.srgb() }
 }

@@ -15,6 +15,8 @@ parameters! {
         front_depth: number(0.4, 0.0..=5.0, "vein radii"),
         /// Height of the veins behind, in vein radii.
         back_height: number(1.2, 0.0..=5.0, "vein radii"),
+        /// Thickness of the blade between the veins.
+        lamina_mm: number(0.22, 0.02..=5.0, "mm"),
         /// How far the tissue swells between the veins.
         quilting_mm: number(0.04, 0.0..=5.0, "mm"),
         /// Fine speckle of the surface: 0 smooth, 1 rough (Foster's leaf roughness).
@@ -42,6 +44,7 @@ pub(super) struct Ground {
 pub(super) struct Relief {
     front_depth: f32,
     back_height: f32,
+    lamina: f32,
     quilting: f32,
     /// Swell of an areole (mm), as far as the texels show areoles.
     areole: f32,
@@ -64,6 +67,7 @@ impl Relief {
         Self {
             front_depth: spec.front_depth as f32,
             back_height: spec.back_height as f32,
+            lamina: spec.lamina_mm as f32,
             quilting: spec.quilting_mm as f32,
             areole: 0.3 * spec.quilting_mm as f32 * shown,
             roughness: spec.roughness as f32,
@@ -79,6 +83,18 @@ impl Relief {
         let tissue = self.quilting + self.areole + GRAIN_HEIGHT_MM * self.roughness;
         // Never nothing: a flat leaf still needs a scale.
         ((veins + tissue).max(self.stalk) * 1.02).max(0.01)
+    }
+
+    /// From front to back (mm): the lamina, and the veins in it, which are round.
+    #[inline]
+    pub(super) fn thickness(&self, ground: &Ground) -> f32 {
+        self.lamina.max(2.0 * ground.vein.dome) + 0.5 * self.lamina * ground.vein.cover
+    }
+
+    /// No place is thicker than this (mm).
+    pub(super) fn thickest(&self) -> f32 {
+        let veins = 2.0 * self.widest.max(self.root);
+        (self.lamina.max(veins) + 0.5 * self.lamina).max(2.0 * self.stalk) * 1.001
     }
 
     /// Front and back.
@@ -110,16 +126,16 @@ impl Relief {
 
     /// Foster's bump of front and back: the blade at 128, veins lower in front and higher behind.
     #[inline]
-    pub(super) fn bumps(&self, ground: &Ground) -> [u8; 2] {
+    pub(super) fn bumps(&self, ground: &Ground) -> [f32; 2] {
         let vein = self.bump_of_vein(ground.vein.radius) * ground.vein.cover;
         let speckle = BUMP_SPECKLE * self.roughness * ground.grain;
-        [128.5 - vein + speckle, 128.5 + vein + speckle].map(|red| red as u8)
+        [128.5 - vein + speckle, 128.5 + vein + speckle]
     }
 
     /// The petiole lies at the height of the root.
-    pub(super) fn stalk_bumps(&self) -> [u8; 2] {
+    pub(super) fn stalk_bumps(&self) -> [f32; 2] {
         let root = self.bump_of_vein(self.root);
-        [(128.5 - root) as u8, (128.5 + root) as u8]
+        [128.5 - root, 128.5 + root]
     }
 
     /// By the root of the radius: linear, all but the midrib would vanish in 8 bits.

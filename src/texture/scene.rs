@@ -1,31 +1,34 @@
 //! One leaf laid out on its texture, and painting it by bands of rows.
 //!
 //! A band knows everything it needs, so bands run in parallel and in any order with the same
-//! bytes. Each computes a row more on either side, for the slopes of its outermost rows.
+//! bytes. What looks at neighbours, normals and occlusion, is made from the heights afterwards.
 
 use std::ops::Range;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::Paint;
 use super::fields::{Strokes, midrib};
 use super::guide::{Guide, Reach};
-use super::normals;
+use super::map::{MapKind, MapSet};
+use super::optics::{self, Optics};
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::Pigments;
 use super::relief::Relief;
-use super::texel::Walker;
+use super::side::SideMaps;
+use super::texel::{Shade, Texel, Walker};
 use super::tissue;
-use super::{Paint, SideMaps};
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 use crate::raster::Grid;
+use crate::raster::color::byte;
 use crate::raster::coverage::{Capsule, polygon_rows, stroke_share};
 use crate::seed::{Seed, Stage};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
-/// Rows painted at once: enough that the rows shared with the neighbours cost little, few enough
+/// Rows painted at once: enough that a vein is not looked at again for every few rows, few enough
 /// that a band's fields stay in the cache of a core.
 const BAND: usize = 32;
 
@@ -47,15 +50,22 @@ pub(super) struct Scene {
     pub(super) stalk_length: f32,
     pub(super) pigments: [Pigments; 2],
     pub(super) relief: Relief,
+    pub(super) optics: Optics,
+    maps: MapSet,
     pub(super) seed: u32,
 }
 
-/// The rows of one side's maps that a band fills.
+/// The rows of one side's maps that a band fills; empty where a map is not kept.
 struct SideRows<'a> {
     colour: &'a mut [[u8; 4]],
     height: &'a mut [u16],
-    normal: &'a mut [[u8; 3]],
     bump: &'a mut [u8],
+    roughness: &'a mut [u8],
+    transmission: &'a mut [u8],
+    translucency: &'a mut [[u8; 3]],
+    thickness: &'a mut [u16],
+    vein_mask: &'a mut [u8],
+    vein_order: &'a mut [u8],
 }
 
 impl Scene {
@@ -105,6 +115,8 @@ impl Scene {
             stalk_length: paint.petiole.length_mm as f32,
             pigments: Pigments::of_sides(paint.colour, &paint.petiole.colour, 6.0 * neck as f32),
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
+            optics: Optics::new(paint.relief),
+            maps: paint.maps,
             stalk,
             seed: tissue,
         }
@@ -123,96 +135,93 @@ impl Scene {
         2.0 * f64::from(self.relief.bound())
     }
 
-    /// Both sides as seen from the front, empty where the leaf is not.
+    /// Thickness that the greatest value of the thickness maps stands for (mm).
+    pub(super) fn thickness_range_mm(&self) -> f64 {
+        f64::from(self.relief.thickest())
+    }
+
+    /// Both sides, empty where the leaf is not, heights without their normals; the back mirrored.
     pub(super) fn paint(&self) -> [SideMaps; 2] {
         let size = self.size;
-        let mut sides = [SideMaps::empty(size), SideMaps::empty(size)];
+        let mut sides = [SideMaps::empty(size, self.maps), SideMaps::empty(size, self.maps)];
         let [front, back] = &mut sides;
-        (bands(front, size), bands(back, size)).into_par_iter().enumerate().for_each(
-            |(i, (front, back))| {
-                let rows = i * BAND..((i + 1) * BAND).min(size);
-                self.paint_band(rows, front, back);
-            },
-        );
+        let bands: Vec<_> = bands(front, size).zip(bands(back, size)).collect();
+        bands.into_par_iter().enumerate().for_each(|(i, (mut front, mut back))| {
+            let rows = i * BAND..((i + 1) * BAND).min(size);
+            self.paint_band(rows, [&mut front, &mut back]);
+        });
         sides
     }
 
-    fn paint_band(&self, rows: Range<usize>, mut front: SideRows<'_>, mut back: SideRows<'_>) {
+    fn paint_band(&self, rows: Range<usize>, sides: [&mut SideRows<'_>; 2]) {
         let size = self.size;
-        let halo = rows.start.saturating_sub(1)..(rows.end + 1).min(size);
-        let cover = self.blade_cover(halo.clone());
-        let stalk = self.stalk.rows(&self.frame, size, halo.clone());
+        let cover = self.blade_cover(rows.clone());
+        let stalk = self.stalk.rows(&self.frame, size, rows.clone());
         let spans = spans(&cover, stalk.as_deref(), size);
         if spans.iter().all(Range::is_empty) {
             return;
         }
-        let veins = self.strokes.rows(size, halo.clone());
-        let mut heights = vec![[0.0_f32; 2]; size * halo.len()];
+        let veins = self.strokes.rows(size, rows.clone());
         let mut walker = Walker::new(self);
-        for y in halo.clone() {
-            let k = y - halo.start;
-            // Slopes reach one texel over the edge, to the sides as well as up and down.
-            let span = [k.saturating_sub(1), k, (k + 1).min(halo.len() - 1)]
-                .into_iter()
-                .map(|k| spans[k].clone())
-                .filter(|span| !span.is_empty())
-                .reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
-            let Some(span) = span else { continue };
-            let row = k * size..(k + 1) * size;
-            let within = rows.contains(&y).then(|| y - rows.start);
+        let [front, back] = sides;
+        for y in rows.clone() {
+            let line = (y - rows.start) * size;
+            let span = spans[y - rows.start].clone();
+            if span.is_empty() {
+                continue;
+            }
             let guide = self.guide.row(y);
-            for x in span.start.saturating_sub(1)..(span.end + 1).min(size) {
-                let i = row.start + x;
+            for x in span {
+                let i = line + x;
                 let stalk = stalk.as_ref().map_or(StalkAt::default(), |stalk| stalk[i]);
                 let texel = walker.texel(x, y, guide.at(x), veins[i], cover[i], stalk);
-                heights[i] = texel.heights();
-                if let Some(line) = within
-                    && texel.alpha > 0
-                {
-                    let at = line * size + x;
-                    [front.colour[at], back.colour[at]] = texel.colours();
-                    [front.bump[at], back.bump[at]] = texel.bumps();
+                if texel.alpha > 0 {
+                    // Mirrored with the picture: what lies right in front lies left behind.
+                    self.put(&texel, [(front, i), (back, line + size - 1 - x)]);
                 }
             }
         }
-        self.write_relief(&heights, &halo, &rows, &mut front, &mut back);
     }
 
-    /// Heights and normals of the texels that have a colour.
-    fn write_relief(
-        &self,
-        heights: &[[f32; 2]],
-        halo: &Range<usize>,
-        rows: &Range<usize>,
-        front: &mut SideRows<'_>,
-        back: &mut SideRows<'_>,
-    ) {
-        let size = self.size;
+    /// Writes a texel to the planes that are kept.
+    #[inline]
+    fn put(&self, texel: &Texel<'_>, places: [(&mut SideRows<'_>, usize); 2]) {
+        let maps = self.maps;
+        let colours = texel.colours();
+        let [heights, bumps, roughness] = [
+            if maps.has(MapKind::Height) { texel.heights() } else { [0.0; 2] },
+            if maps.has(MapKind::Bump) { texel.bumps() } else { [0.0; 2] },
+            if maps.has(MapKind::Roughness) { texel.roughness() } else { [0.0; 2] },
+        ];
+        let thickness = if maps.has(MapKind::Thickness) { texel.thickness() } else { 0.0 };
         let scale = 65535.0 / (2.0 * self.relief.bound());
-        for y in rows.clone() {
-            let (line, k) = ((y - rows.start) * size, y - halo.start);
-            // At the border of the picture the difference is one-sided.
-            let (above, below) = (k.saturating_sub(1), (k + 1).min(halo.len() - 1));
-            let per_y = self.per_mm / (below - above).max(1) as f32;
-            for x in 0..size {
-                let at = line + x;
-                if front.colour[at][3] == 0 {
-                    continue;
-                }
-                let (left, right) = (x.saturating_sub(1), (x + 1).min(size - 1));
-                let per_x = self.per_mm / (right - left).max(1) as f32;
-                let h = |column: usize, row: usize| heights[row * size + column];
-                let (here, west, east) = (h(x, k), h(left, k), h(right, k));
-                let (north, south) = (h(x, above), h(x, below));
-                let slopes = |side: usize| {
-                    ((east[side] - west[side]) * per_x, (north[side] - south[side]) * per_y)
-                };
-                let ((dx, dy), (back_dx, back_dy)) = (slopes(0), slopes(1));
-                front.normal[at] = normals::encoded(normals::from_slopes(dx, dy));
-                // Mirrored with the picture: what rises to the right here rises to the left there.
-                back.normal[at] = normals::encoded(normals::from_slopes(-back_dx, back_dy));
-                front.height[at] = (here[0] * scale + 32768.0) as u16;
-                back.height[at] = (here[1] * scale + 32768.0) as u16;
+        for (side, (rows, at)) in places.into_iter().enumerate() {
+            let Shade { reflected, through } = colours[side];
+            let [r, g, b] = reflected.map(byte);
+            rows.colour[at] = [r, g, b, texel.alpha];
+            if let Some(height) = rows.height.get_mut(at) {
+                *height = (heights[side] * scale + 32768.0) as u16;
+            }
+            if let Some(bump) = rows.bump.get_mut(at) {
+                *bump = bumps[side] as u8;
+            }
+            if let Some(slot) = rows.roughness.get_mut(at) {
+                *slot = byte(roughness[side]);
+            }
+            if let Some(slot) = rows.transmission.get_mut(at) {
+                *slot = byte(optics::transmitted_share(reflected, through));
+            }
+            if let Some(slot) = rows.translucency.get_mut(at) {
+                *slot = through.map(byte);
+            }
+            if let Some(slot) = rows.thickness.get_mut(at) {
+                *slot = (thickness / self.relief.thickest() * 65535.0 + 0.5) as u16;
+            }
+            if let Some(slot) = rows.vein_mask.get_mut(at) {
+                *slot = texel.vein_mask();
+            }
+            if let Some(slot) = rows.vein_order.get_mut(at) {
+                *slot = texel.vein_order();
             }
         }
     }
@@ -272,16 +281,30 @@ fn spans(cover: &[f32], stalk: Option<&[StalkAt]>, width: usize) -> Vec<Range<us
         .collect()
 }
 
-fn bands(side: &mut SideMaps, size: usize) -> impl IndexedParallelIterator<Item = SideRows<'_>> {
-    fn chunks<T: Send>(grid: &mut Grid<T>, size: usize) -> rayon::slice::ChunksMut<'_, T> {
-        grid.values_mut().par_chunks_mut(BAND * size)
+fn bands(side: &mut SideMaps, size: usize) -> impl Iterator<Item = SideRows<'_>> {
+    // A plane that is not kept has no rows, in every band.
+    fn chunks<T>(plane: &mut Grid<T>, size: usize) -> impl Iterator<Item = &mut [T]> {
+        plane.values_mut().chunks_mut(BAND * size).chain(std::iter::repeat_with(Default::default))
     }
-    (
-        chunks(&mut side.base_colour, size),
-        chunks(&mut side.height, size),
-        chunks(&mut side.normal, size),
-        chunks(&mut side.bump, size),
-    )
-        .into_par_iter()
-        .map(|(colour, height, normal, bump)| SideRows { colour, height, normal, bump })
+    let mut height = chunks(&mut side.height, size);
+    let mut bump = chunks(&mut side.bump, size);
+    let mut roughness = chunks(&mut side.roughness, size);
+    let mut transmission = chunks(&mut side.transmission, size);
+    let mut translucency = chunks(&mut side.translucency, size);
+    let mut thickness = chunks(&mut side.thickness, size);
+    let mut vein_mask = chunks(&mut side.vein_mask, size);
+    let mut vein_order = chunks(&mut side.vein_order, size);
+    side.base_colour.values_mut().chunks_mut(BAND * size).map_while(move |colour| {
+        Some(SideRows {
+            colour,
+            height: height.next()?,
+            bump: bump.next()?,
+            roughness: roughness.next()?,
+            transmission: transmission.next()?,
+            translucency: translucency.next()?,
+            thickness: thickness.next()?,
+            vein_mask: vein_mask.next()?,
+            vein_order: vein_order.next()?,
+        })
+    })
 }

@@ -129,31 +129,76 @@ impl Texel<'_> {
     }
 
     #[inline]
-    pub(super) fn bumps(&self) -> [u8; 2] {
+    pub(super) fn bumps(&self) -> [f32; 2] {
         let blade = self.scene.relief.bumps(&self.ground);
         if self.stalk.cover == 0.0 {
             return blade;
         }
         let (stalk, shares) = (self.scene.relief.stalk_bumps(), self.stalk_shares());
-        std::array::from_fn(|side| {
-            let (blade, stalk) = (f32::from(blade[side]), f32::from(stalk[side]));
-            (blade + (stalk - blade) * shares[side] + 0.5) as u8
-        })
+        std::array::from_fn(|side| blade[side] + (stalk[side] - blade[side]) * shares[side])
     }
 
+    /// Perceptual roughness of both sides.
     #[inline]
-    pub(super) fn colours(&self) -> [[u8; 4]; 2] {
+    pub(super) fn roughness(&self) -> [f32; 2] {
+        let blade = self.scene.optics.roughness(&self.ground, 0.0);
+        if self.stalk.cover == 0.0 {
+            return blade;
+        }
+        let (stalk, shares) = (self.scene.optics.stalk(), self.stalk_shares());
+        std::array::from_fn(|side| blade[side] + (stalk[side] - blade[side]) * shares[side])
+    }
+
+    /// From front to back (mm).
+    #[inline]
+    pub(super) fn thickness(&self) -> f32 {
+        let blade = self.scene.relief.thickness(&self.ground) * self.blade;
+        blade.max(2.0 * self.stalk.dome)
+    }
+
+    /// How much of the texel is vein.
+    #[inline]
+    pub(super) fn vein_mask(&self) -> u8 {
+        byte(self.ground.vein.cover * self.blade)
+    }
+
+    /// The order of the vein, 0 where there is none.
+    #[inline]
+    pub(super) fn vein_order(&self) -> u8 {
+        if self.blade >= 0.5 { self.ground.vein.order } else { 0 }
+    }
+
+    /// What is seen of both sides, and through them.
+    #[inline]
+    pub(super) fn colours(&self) -> [Shade; 2] {
         let shares = self.stalk_shares();
         std::array::from_fn(|side| {
             let pigments = &self.scene.pigments[side];
-            let mut rgb = pigments.blade(&self.tissue).srgb();
+            let mut shade = pigments.blade(&self.tissue);
             if shares[side] > 0.0 {
                 let length = self.scene.stalk_length;
-                let stalk = pigments.stalk(&self.stalk, length, self.fibre).srgb();
-                rgb = std::array::from_fn(|k| rgb[k] + (stalk[k] - rgb[k]) * shares[side]);
+                let stalk = pigments.stalk(&self.stalk, length, self.fibre);
+                shade = shade.mixed(stalk, shares[side]);
             }
-            let [r, g, b] = rgb.map(byte);
-            [r, g, b, self.alpha]
+            shade
         })
+    }
+}
+
+/// Light that comes back from a place and light that goes through it, as sRGB numbers 0–1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shade {
+    pub reflected: [f32; 3],
+    pub through: [f32; 3],
+}
+
+impl Shade {
+    #[inline]
+    fn mixed(self, other: Self, share: f32) -> Self {
+        let mix = |a: [f32; 3], b: [f32; 3]| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share);
+        Self {
+            reflected: mix(self.reflected, other.reflected),
+            through: mix(self.through, other.through),
+        }
     }
 }

@@ -29,8 +29,10 @@ fn a_leaf_comes_with_all_its_files() {
         .map(|path| path.to_string_lossy().into_owned())
         .collect();
     let n = "fagus-sylvatica";
-    let mut expected: Vec<String> = ["BaseColor", "Height", "Normal", "Opacity"]
-        .iter()
+    let maps = "BaseColor Opacity Normal Height Roughness AmbientOcclusion ORM Translucency Thickness \
+                VeinMask VeinOrder";
+    let mut expected: Vec<String> = maps
+        .split(' ')
         .flat_map(|map| [format!("{n}_{map}.png"), format!("back/{n}_{map}.png")])
         .chain([format!("{n}.obj"), format!("{n}.mtl")])
         .chain(["leaf.toml".into(), "manifest.json".into()])

@@ -117,10 +117,17 @@ fn textures(margin: &Margin) -> TextureSet {
         ),
         height: grid(|i| (i * 29 + salt * 1000) as u16),
         normal: grid(|i| [pixel(i, salt), 128, 255]),
+        roughness: grid(|i| pixel(i, salt + 6)),
+        occlusion: grid(|i| pixel(i, salt + 7)),
+        transmission: grid(|i| pixel(i, salt + 8)),
+        translucency: grid(|i| [pixel(i, salt + 9), pixel(i, salt), 7]),
+        thickness: grid(|i| (i * 31 + salt * 900) as u16),
+        vein_mask: grid(|i| pixel(i, salt + 10)),
+        vein_order: grid(|i| (i % 6) as u8),
         bump: grid(|i| pixel(i, salt + 5)),
     };
     let (front, back) = (side(1), side(2));
-    TextureSet { frame, front, back, height_range_mm: 0.75, petiole_end }
+    TextureSet { frame, front, back, height_range_mm: 0.75, thickness_range_mm: 1.5, petiole_end }
 }
 
 fn grid<T>(value: impl FnMut(usize) -> T) -> Grid<T> {
@@ -150,18 +157,17 @@ fn files_are_those_announced_and_the_same_on_any_number_of_threads() {
     assert_eq!(names.last(), Some(&"manifest.json"));
     let all: HashSet<&&str> = names.iter().collect();
     assert_eq!(all.len(), names.len());
+    let maps = [MapKind::Height, MapKind::Normal, MapKind::AmbientOcclusion];
     assert_eq!(
-        file_names("oak", MapKind::DEFAULT, FormatKind::DEFAULT),
+        file_names("oak", &maps, FormatKind::DEFAULT),
         [
             "leaf.toml",
-            "oak_BaseColor.png",
-            "oak_Opacity.png",
-            "oak_Height.png",
             "oak_Normal.png",
-            "back/oak_BaseColor.png",
-            "back/oak_Opacity.png",
-            "back/oak_Height.png",
+            "oak_Height.png",
+            "oak_AmbientOcclusion.png",
             "back/oak_Normal.png",
+            "back/oak_Height.png",
+            "back/oak_AmbientOcclusion.png",
             "oak.obj",
             "oak.mtl",
             "manifest.json"
@@ -372,7 +378,8 @@ fn the_manifest_tells_the_truth() {
         assert_eq!(record.sha256, hash);
         assert!(!record.meaning.is_empty());
         if name.ends_with(".png") {
-            let colour = name.ends_with("BaseColor.png");
+            let colour =
+                ["BaseColor.png", "Translucency.png"].iter().any(|end| name.ends_with(end));
             assert_eq!(
                 record.colour_space.as_deref(),
                 Some(if colour { "sRGB" } else { "linear" })

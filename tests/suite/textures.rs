@@ -7,6 +7,7 @@ use venation::margin::Margin;
 use venation::observer::Silent;
 use venation::raster::Grid;
 use venation::seed::Seed;
+use venation::texture::map::MapSet;
 use venation::texture::petiole::PetioleSpec;
 use venation::texture::pigment::{ColourSpec, ColourType, Hsv};
 use venation::texture::relief::ReliefSpec;
@@ -34,6 +35,7 @@ impl Settings {
             petiole: &self.petiole,
             colour: &self.colour,
             relief: &self.relief,
+            maps: MapSet::ALL,
             default_speckles: 6,
         }
     }

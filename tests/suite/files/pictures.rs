@@ -35,6 +35,13 @@ fn pngs_say_what_they_are() {
         ("Opacity", 8, 4),
         ("Height", 16, 0),
         ("Normal", 8, 2),
+        ("Roughness", 8, 0),
+        ("AmbientOcclusion", 8, 0),
+        ("ORM", 8, 6),
+        ("Translucency", 8, 2),
+        ("Thickness", 16, 0),
+        ("VeinMask", 8, 0),
+        ("VeinOrder", 8, 0),
         ("Bump", 8, 2),
     ];
     let per_metre = (leaf.textures.frame.pixels_per_mm(SIZE) * 1000.0).round() as u32;
@@ -48,11 +55,12 @@ fn pngs_say_what_they_are() {
             let header = chunks[0].1;
             assert_eq!(header[..8], [0, 0, 0, SIZE as u8, 0, 0, 0, SIZE as u8]);
             assert_eq!(header[8..], [depth, colour, 0, 0, 0], "{suffix}");
-            assert_eq!(content("sRGB").is_some(), suffix == "BaseColor", "{suffix}");
+            let coloured = ["BaseColor", "Translucency"].contains(&suffix);
+            assert_eq!(content("sRGB").is_some(), coloured, "{suffix}");
             for bending in ["iCCP", "tIME"] {
                 assert_eq!(content(bending), None, "{suffix}");
             }
-            if suffix != "BaseColor" {
+            if !coloured {
                 assert_eq!((content("gAMA"), content("cHRM")), (None, None), "{suffix}");
             }
             let size = [&per_metre.to_be_bytes()[..], &per_metre.to_be_bytes(), &[1]].concat();
@@ -84,6 +92,15 @@ fn pixels_read_back_as_they_were() {
         assert_eq!(decoded("Height").as_luma16().unwrap().as_raw(), maps.height.values());
         let normals = maps.normal.values().as_flattened();
         assert_eq!(decoded("Normal").as_rgb8().unwrap().as_raw(), normals);
+        let packed: Vec<u8> = (0..SIZE * SIZE)
+            .flat_map(|i| {
+                let of = |plane: &venation::raster::Grid<u8>| plane.values()[i];
+                [of(&maps.occlusion), of(&maps.roughness), 0, of(&maps.transmission)]
+            })
+            .collect();
+        assert_eq!(*decoded("ORM").as_rgba8().unwrap().as_raw(), packed);
+        assert_eq!(decoded("Thickness").as_luma16().unwrap().as_raw(), maps.thickness.values());
+        assert_eq!(decoded("VeinOrder").as_luma8().unwrap().as_raw(), maps.vein_order.values());
         let bump: Vec<u8> = maps.bump.values().iter().flat_map(|&h| [h, 0, 0]).collect();
         assert_eq!(*decoded("Bump").as_rgb8().unwrap().as_raw(), bump);
     }

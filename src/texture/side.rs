@@ -1,0 +1,171 @@
+//! The maps of one side, as planes of pixels.
+
+use rayon::prelude::*;
+
+use super::map::{MapKind, MapSet, Outside};
+use crate::raster::Grid;
+
+/// The normal of a plain surface.
+pub(super) const FLAT: [u8; 3] = [128, 128, 255];
+
+/// The maps of one side.
+///
+/// # Guarantees
+///
+/// Planes that were asked for are squares of one size; the others are empty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SideMaps {
+    /// Base colour, sRGB, and coverage as straight alpha. Under alpha 0 the colour is that of the
+    /// nearest fully covered texel. Always there.
+    pub base_colour: Grid<[u8; 4]>,
+    /// Unit normal in tangent space, OpenGL (+y up the picture), 0–255 for −1–1.
+    pub normal: Grid<[u8; 3]>,
+    /// Height above the lowest place the map can show; 65535 is `TextureSet::height_range_mm`.
+    pub height: Grid<u16>,
+    /// Perceptual roughness.
+    pub roughness: Grid<u8>,
+    /// Ambient light that reaches the surface.
+    pub occlusion: Grid<u8>,
+    /// Share of the scattered light that comes out on the far side.
+    pub transmission: Grid<u8>,
+    /// Colour of the light that comes through, sRGB.
+    pub translucency: Grid<[u8; 3]>,
+    /// Thickness; 65535 is `TextureSet::thickness_range_mm`.
+    pub thickness: Grid<u16>,
+    /// How much of the texel is vein.
+    pub vein_mask: Grid<u8>,
+    /// Order of the vein, 0 for none.
+    pub vein_order: Grid<u8>,
+    /// Foster's bump: red channel, blade at 128.
+    pub bump: Grid<u8>,
+}
+
+impl SideMaps {
+    /// The maps of no leaf at all: clear, flat.
+    #[must_use]
+    pub fn empty(size: usize, maps: MapSet) -> Self {
+        fn plane<T: Clone>(size: usize, maps: MapSet, map: MapKind, value: T) -> Grid<T> {
+            let side = if maps.has(map) { size } else { 0 };
+            Grid::filled(side, side, value)
+        }
+        Self {
+            base_colour: Grid::filled(size, size, [0; 4]),
+            normal: plane(size, maps, MapKind::Normal, FLAT),
+            height: plane(size, maps, MapKind::Height, 1 << 15),
+            roughness: plane(size, maps, MapKind::Roughness, 0),
+            occlusion: plane(size, maps, MapKind::AmbientOcclusion, u8::MAX),
+            transmission: plane(size, maps, MapKind::Orm, 0),
+            translucency: plane(size, maps, MapKind::Translucency, [0; 3]),
+            thickness: plane(size, maps, MapKind::Thickness, 0),
+            vein_mask: plane(size, maps, MapKind::VeinMask, 0),
+            vein_order: plane(size, maps, MapKind::VeinOrder, 0),
+            bump: plane(size, maps, MapKind::Bump, 128),
+        }
+    }
+
+    /// Side of the pictures (pixels).
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.base_colour.width()
+    }
+
+    /// Whether this map was painted.
+    #[must_use]
+    pub fn has(&self, map: MapKind) -> bool {
+        let side = match map {
+            MapKind::BaseColour | MapKind::Opacity => self.base_colour.width(),
+            MapKind::Normal => self.normal.width(),
+            MapKind::Height => self.height.width(),
+            MapKind::Roughness => self.roughness.width(),
+            MapKind::AmbientOcclusion => self.occlusion.width(),
+            MapKind::Orm => self.transmission.width(),
+            MapKind::Translucency => self.translucency.width(),
+            MapKind::Thickness => self.thickness.width(),
+            MapKind::VeinMask => self.vein_mask.width(),
+            MapKind::VeinOrder => self.vein_order.width(),
+            MapKind::Bump => self.bump.width(),
+        };
+        side > 0
+    }
+
+    /// The bytes of a map, row by row from the top, channels side by side, 16-bit numbers with the
+    /// high byte first; the layout is [`MapKind::channels`] and [`MapKind::bits`]. Empty for a map
+    /// that was not painted.
+    #[must_use]
+    pub fn samples(&self, map: MapKind) -> Vec<u8> {
+        match map {
+            MapKind::BaseColour => self.base_colour.values().as_flattened().to_vec(),
+            MapKind::Opacity => bytes(&self.base_colour, |&[.., alpha]| [alpha, alpha]),
+            MapKind::Normal => self.normal.values().as_flattened().to_vec(),
+            MapKind::Height => bytes(&self.height, |height| height.to_be_bytes()),
+            MapKind::Roughness => self.roughness.values().to_vec(),
+            MapKind::AmbientOcclusion => self.occlusion.values().to_vec(),
+            MapKind::Orm => {
+                let roughness = self.roughness.values().par_iter();
+                let packed = (self.occlusion.values(), self.transmission.values())
+                    .into_par_iter()
+                    .zip(roughness)
+                    .map(|((&ao, &transmission), &roughness)| [ao, roughness, 0, transmission]);
+                packed.collect::<Vec<_>>().into_flattened()
+            }
+            MapKind::Translucency => self.translucency.values().as_flattened().to_vec(),
+            MapKind::Thickness => bytes(&self.thickness, |thickness| thickness.to_be_bytes()),
+            MapKind::VeinMask => self.vein_mask.values().to_vec(),
+            MapKind::VeinOrder => self.vein_order.values().to_vec(),
+            MapKind::Bump => bytes(&self.bump, |&height| [height, 0, 0]),
+        }
+    }
+
+    /// Fills the texels outside the leaf from the texels `source` names (row by row from the top),
+    /// each plane after its map's [`Outside`].
+    pub(super) fn spread(&mut self, source: impl Fn(usize) -> Option<usize> + Sync) {
+        fill(&mut self.base_colour, &source, |texel, [r, g, b, _]| *texel = [r, g, b, 0]);
+        fill(&mut self.height, &source, |texel, source| *texel = source);
+        fill(&mut self.roughness, &source, |texel, source| *texel = source);
+        fill(&mut self.transmission, &source, |texel, source| *texel = source);
+        fill(&mut self.translucency, &source, |texel, source| *texel = source);
+        fill(&mut self.bump, &source, |texel, source| *texel = source);
+        debug_assert!(MapKind::Thickness.outside() == Outside::Zero, "left as it is empty");
+    }
+
+    /// The first plane that is neither empty nor a square of the base colour's size.
+    pub(super) fn check(&self) -> Option<&'static str> {
+        let size = self.size();
+        let planes = [
+            ("normal", self.normal.width(), self.normal.height()),
+            ("height", self.height.width(), self.height.height()),
+            ("roughness", self.roughness.width(), self.roughness.height()),
+            ("occlusion", self.occlusion.width(), self.occlusion.height()),
+            ("transmission", self.transmission.width(), self.transmission.height()),
+            ("translucency", self.translucency.width(), self.translucency.height()),
+            ("thickness", self.thickness.width(), self.thickness.height()),
+            ("vein mask", self.vein_mask.width(), self.vein_mask.height()),
+            ("vein order", self.vein_order.width(), self.vein_order.height()),
+            ("bump", self.bump.width(), self.bump.height()),
+        ];
+        planes
+            .into_iter()
+            .find(|&(_, width, height)| (width, height) != (size, size) && width + height > 0)
+            .map(|(name, ..)| name)
+    }
+}
+
+fn bytes<T: Sync, const N: usize>(
+    plane: &Grid<T>,
+    bytes: impl Fn(&T) -> [u8; N] + Sync + Send,
+) -> Vec<u8> {
+    plane.values().par_iter().map(bytes).collect::<Vec<_>>().into_flattened()
+}
+
+fn fill<T: Copy>(
+    plane: &mut Grid<T>,
+    source: impl Fn(usize) -> Option<usize>,
+    put: impl Fn(&mut T, T),
+) {
+    for i in 0..plane.values().len() {
+        if let Some(source) = source(i) {
+            let source = plane.values()[source];
+            put(&mut plane.values_mut()[i], source);
+        }
+    }
+}

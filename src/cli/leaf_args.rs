@@ -76,6 +76,9 @@ pub(crate) struct LeafArgs {
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
+    /// Perturb every number of the margin by up to so many percent, on top of the preset's ranges.
+    #[arg(long, value_name = "PERCENT%")]
+    vary: Option<String>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]
@@ -144,6 +147,9 @@ impl LeafArgs {
         let mut document = read_document(&self.leaf)?;
         if let Some(length) = self.length_mm {
             document.set(&format!("margin.length_mm={length}"), "--length-mm")?;
+        }
+        if let Some(vary) = &self.vary {
+            document.set(&format!("vary={vary}"), "--vary")?;
         }
         if let Some(growth) = self.growth {
             document.set(&format!("growth.type={}", growth.word()), "--growth")?;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::value::{self, from_plain};
 use super::{Document, DocumentError, Entry, Value, parameters};
+use crate::margin::instances;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
 
@@ -20,6 +21,9 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     })?;
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
+    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0) {
+        spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
+    }
     Ok(spec)
 }
 
@@ -78,5 +82,5 @@ pub(super) fn document_of(spec: &LeafSpec, seed: u64) -> Document {
             Some((parameter.key.clone(), Entry { value, origin: "leaf".into() }))
         })
         .collect();
-    Document { entries, seed: Some(seed) }
+    Document { entries, seed: Some(seed), vary: None }
 }

@@ -8,6 +8,7 @@
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
 pub mod detail;
+pub mod instances;
 mod landmarks;
 mod outline;
 pub mod parametric;

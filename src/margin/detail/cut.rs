@@ -56,6 +56,19 @@ const FRAME: f64 = 0.15;
 const BOW: f64 = 0.22;
 const FLEXURE: f64 = 0.8;
 
+/// Teeth on the flank towards the tip lean this much as the others do.
+const UPPER_LEAN: f64 = -0.4;
+
+/// What is particular to the teeth of one order on one edge or flank.
+#[derive(Debug, Clone, Copy)]
+struct Rank {
+    order: u8,
+    /// How far tips stand from the middle, along the run (widths).
+    lean: f64,
+    /// The part of the outline they shrink with; each its own on an edge.
+    part: Option<f64>,
+}
+
 pub(super) struct Cutter<'a> {
     pub(super) form: &'a ToothForm,
     /// How far the polygon may stray from the curves (mm).
@@ -67,12 +80,13 @@ pub(super) struct Cutter<'a> {
 impl Cutter<'_> {
     /// The edge with its teeth, from its first to its last point, corners rounded.
     pub(super) fn edge(&mut self, run: &Run, teeth: &[Tooth]) -> Vec<Node> {
-        let nodes = self.cut(run, teeth, 1, None);
+        let nodes = self.cut(run, teeth, Rank { order: 1, lean: self.form.lean, part: None });
         self.rounded(&nodes)
     }
 
-    /// One order of teeth; those above the first shrink with their larger tooth's `part`.
-    fn cut(&mut self, run: &Run, teeth: &[Tooth], order: u8, part: Option<f64>) -> Vec<Node> {
+    /// One order of teeth.
+    fn cut(&mut self, run: &Run, teeth: &[Tooth], rank: Rank) -> Vec<Node> {
+        let part = rank.part;
         let length = run.length();
         let least = 1e-9 * length;
         let teeth: Vec<&Tooth> =
@@ -97,7 +111,8 @@ impl Cutter<'_> {
                 self.parts += 1;
             }
             let frame = Frame { run, from, width: to - from };
-            self.tooth(&mut nodes, &frame, tooth, [sink, high, next_sink], order, own);
+            let rank = Rank { part: Some(own), ..rank };
+            self.tooth(&mut nodes, &frame, tooth, [sink, high, next_sink], rank);
             (at, sink) = (to, next_sink);
         }
         self.plain(&mut nodes, run, at, length, part);
@@ -137,11 +152,11 @@ impl Cutter<'_> {
         frame: &Frame<'_>,
         tooth: &Tooth,
         [below, high, above]: [f64; 3],
-        order: u8,
-        part: f64,
+        rank: Rank,
     ) {
-        let width = frame.width;
-        let tip_at = 0.5 + self.form.lean;
+        let (width, order) = (frame.width, rank.order);
+        let part = rank.part.unwrap_or(0.0);
+        let tip_at = 0.5 + rank.lean;
         let corners =
             [DVec2::new(0.0, below), DVec2::new(tip_at * width, high), DVec2::new(width, above)];
         let tip_foot = tip_at.clamp(0.15, 0.85);
@@ -159,7 +174,9 @@ impl Cutter<'_> {
                 points.iter().zip(&feet).map(|(&p, &f)| Node::plain(p, f, part)).collect()
             } else {
                 let flank = Run::displaced(points, feet, frame.run.outward);
-                self.cut(&flank, &tooth.flanks[k], order + 1, Some(part))
+                // On the upper flank, forward is back towards the tip of the larger tooth.
+                let lean = if k == 0 { rank.lean } else { UPPER_LEAN * rank.lean };
+                self.cut(&flank, &tooth.flanks[k], Rank { order: order + 1, lean, ..rank })
             };
             if order > 1 {
                 let last = nodes.len() - 1;

@@ -196,6 +196,10 @@ impl Detailed {
                     }
                 }
             }
+            if step + 1 == STEPS {
+                // Nothing helped: the outline as it was.
+                whole.fill(0.0);
+            }
             points = self.points(&fine, &whole);
         }
         // Landmarks inside an edge (where a drip tip begins) go to the nearest vertex.

@@ -124,7 +124,8 @@ fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
     if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
 }
 
-fn read_document(leaf: &str) -> Result<Document, Failure> {
+/// The document of a preset or a TOML file.
+pub(crate) fn read_document(leaf: &str) -> Result<Document, Failure> {
     if let Some(preset) = presets::find(leaf) {
         return Ok(preset.document()?);
     }

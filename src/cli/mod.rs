@@ -8,6 +8,7 @@ mod compare;
 mod generate;
 mod inspect;
 mod leaf_args;
+mod morph;
 mod presets;
 mod progress;
 mod seeds;
@@ -143,6 +144,8 @@ enum Command {
     Generate(Box<generate::Args>),
     /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
+    /// One leaf turning into another: frames, a strip and an animation.
+    Morph(Box<morph::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
@@ -169,6 +172,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
+        Command::Morph(args) => morph::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),

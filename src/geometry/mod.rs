@@ -2,6 +2,7 @@
 
 pub mod bspline;
 pub mod noise;
+pub mod nurbs;
 pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;

@@ -26,6 +26,33 @@ const OUTLINE_WIDTH_MM: f64 = 0.1;
 /// The drawing of a leaf.
 #[must_use]
 pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFrame) -> String {
+    let mut svg = head(title, margin, frame);
+    let page = Page { frame };
+    let pieces = pieces(venation);
+    let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
+    for order in 1..=orders {
+        open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");
+        for piece in pieces.iter().filter(|piece| piece.order == order) {
+            let points = page.points(&piece.points);
+            if points.contains(' ') {
+                let width = number(2.0 * piece.radius);
+                let _ = writeln!(svg, "<polyline stroke-width=\"{width}\" points=\"{points}\"/>");
+            }
+        }
+        svg.push_str("</g>\n");
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// The drawing of an outline alone.
+#[must_use]
+pub fn outline_svg(title: &str, margin: &Margin, frame: &TextureFrame) -> String {
+    head(title, margin, frame) + "</svg>\n"
+}
+
+/// The head of a drawing and its layer of the outline.
+fn head(title: &str, margin: &Margin, frame: &TextureFrame) -> String {
     let page = Page { frame };
     let side = number(frame.side_mm);
     let mut svg = format!(
@@ -43,20 +70,6 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
     }
     svg.push_str("</g>\n");
 
-    let pieces = pieces(venation);
-    let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
-    for order in 1..=orders {
-        open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");
-        for piece in pieces.iter().filter(|piece| piece.order == order) {
-            let points = page.points(&piece.points);
-            if points.contains(' ') {
-                let width = number(2.0 * piece.radius);
-                let _ = writeln!(svg, "<polyline stroke-width=\"{width}\" points=\"{points}\"/>");
-            }
-        }
-        svg.push_str("</g>\n");
-    }
-    svg.push_str("</svg>\n");
     svg
 }
 

@@ -10,6 +10,7 @@
 pub mod detail;
 pub mod instances;
 mod landmarks;
+pub mod morph;
 mod outline;
 pub mod parametric;
 pub mod placement;
@@ -59,6 +60,10 @@ parameters! {
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.
         cuts_mm: lines(),
+        /// Tips of teeth that stand on the polygon: a line of points for each order.
+        tooth_tips_mm: lines(),
+        /// Lobes of the polygon: for each where its vein begins, and its tip.
+        lobe_veins_mm: lines(),
     }
 }
 
@@ -319,7 +324,9 @@ pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
             let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
             let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
             let apex = apex_vertex(&outline);
-            Margin::new(outline, apex, cuts, "mend margin.polygon_mm there")
+            let landmarks = spec.polygon_landmarks(&outline);
+            let outline = Outline { points: outline, apex, cuts, landmarks };
+            Margin::from_outline(outline, "mend margin.polygon_mm there")
         }
     }
 }
@@ -333,12 +340,33 @@ impl MarginSpec {
         let apex = apex_vertex(&given);
         let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), self.length_mm);
         if self.kind == MarginKind::Polygon && scale != 1.0 {
-            for p in spec.polygon_mm.iter_mut().chain(spec.cuts_mm.iter_mut().flatten()) {
+            let lines = [&mut spec.cuts_mm, &mut spec.tooth_tips_mm, &mut spec.lobe_veins_mm];
+            let points = lines.into_iter().flatten().flatten();
+            for p in spec.polygon_mm.iter_mut().chain(points) {
                 *p = p.map(|x| x * scale);
             }
             spec.polygon_mm[apex][1] = self.length_mm;
         }
         spec
+    }
+}
+
+impl MarginSpec {
+    /// What the settings know of a polygon: each at the vertex nearest to it.
+    fn polygon_landmarks(&self, outline: &[DVec2]) -> Vec<Landmark> {
+        let nearest = |p: &[f64; 2]| {
+            let far = |i: &usize| outline[*i].distance_squared(DVec2::from(*p));
+            (0..outline.len()).min_by(|i, j| far(i).total_cmp(&far(j)))
+        };
+        let orders = self.tooth_tips_mm.iter().zip(1_u8..);
+        let teeth = orders
+            .flat_map(|(tips, order)| tips.iter().map(move |p| (p, LandmarkKind::Tooth { order })));
+        let lobes = self.lobe_veins_mm.iter().filter_map(|vein| match &vein[..] {
+            [origin, tip] => Some((tip, LandmarkKind::LobeTip { origin: DVec2::from(*origin) })),
+            _ => None,
+        });
+        let all = teeth.chain(lobes);
+        all.filter_map(|(p, kind)| Some(Landmark { vertex: nearest(p)?, kind })).collect()
     }
 }
 

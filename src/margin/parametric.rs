@@ -140,6 +140,13 @@ fn curve(landmarks: &[Landmark], tension: f64) -> QuadraticBSpline {
     QuadraticBSpline::new(knots, control)
 }
 
+impl MarginSpec {
+    /// The two sides of a unilobed leaf, right and left, as they are drawn.
+    pub(super) fn sides(&self) -> [SideSpec; 2] {
+        [self.right.clone(), self.right.mixed(&self.left, self.asymmetry)]
+    }
+}
+
 /// The margin of a unilobed leaf.
 ///
 /// # Errors

@@ -77,11 +77,38 @@ impl Seeds {
 /// [`MarginError::Landmark`] with the key, its value and the bound; [`MarginError::SelfCrossing`]
 /// when the outline crosses itself even without detail.
 pub fn set(outline: &Outline, spec: &MarginSpec, seed: Seed) -> Result<Outline, MarginError> {
+    let teeth = plan(outline, spec, seed)?;
+    carve(outline, spec, &teeth, &ToothForm::of(&spec.teeth), seed)
+}
+
+/// Where teeth are to stand, edge by edge in the order of the outline.
+///
+/// # Errors
+///
+/// As [`set`].
+pub fn plan(
+    outline: &Outline,
+    spec: &MarginSpec,
+    seed: Seed,
+) -> Result<Vec<Vec<Tooth>>, MarginError> {
     let seeds = Seeds::new(seed);
-    let edges = Edges::of(outline, spec, &seeds);
-    let teeth = edges.teeth(spec, &seeds)?;
-    let form = ToothForm::of(&spec.teeth);
-    let mut detailed = edges.cut(outline, &teeth, &form);
+    Edges::of(outline, spec, &seeds).teeth(spec, &seeds)
+}
+
+/// An outline with waves and roughness, and these teeth on its edges.
+///
+/// # Errors
+///
+/// [`MarginError::SelfCrossing`] when the outline crosses itself even without detail.
+pub fn carve(
+    outline: &Outline,
+    spec: &MarginSpec,
+    teeth: &[Vec<Tooth>],
+    form: &ToothForm,
+    seed: Seed,
+) -> Result<Outline, MarginError> {
+    let seeds = Seeds::new(seed);
+    let mut detailed = Edges::of(outline, spec, &seeds).cut(outline, teeth, form);
     let fixed = [0, detailed.apex];
     let before = detailed.nodes.len();
     detailed.nodes = ripple::roughened(&detailed.nodes, &fixed, &spec.roughness, seeds.rough);

@@ -90,16 +90,19 @@ fn known_teeth(margin: &Margin) -> Vec<Tip> {
     let teeth = (0..marks.len()).filter(|&i| marks[i].kind == LandmarkKind::Tooth { order: 1 });
     let mut tips: Vec<Tip> = teeth
         .map(|i| {
-            let below = marks[..i].iter().rposition(is_sinus).map_or(DVec2::ZERO, at);
-            let above = marks[i..].iter().position(is_sinus).map_or(DVec2::ZERO, |k| at(i + k));
-            let foot = polygon::nearest_on_segment(below, above, at(i));
+            let below = marks[..i].iter().rposition(is_sinus).map(at);
+            let above = marks[i..].iter().position(is_sinus).map(|k| at(i + k));
+            // A polygon may know its teeth without the sinuses: then all are alike.
+            let height = below.zip(above).map_or(1.0, |(below, above)| {
+                polygon::nearest_on_segment(below, above, at(i)).distance(at(i))
+            });
             let way = ways[marks[i].vertex];
             let (side, along) = if marks[i].vertex <= margin.apex_index() {
                 (1.0, way / apex)
             } else {
                 (-1.0, (round - way) / (round - apex))
             };
-            Tip { at: at(i), along, height: foot.distance(at(i)), side }
+            Tip { at: at(i), along, height, side }
         })
         .collect();
     tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));

@@ -167,13 +167,13 @@ pub fn resampled(polygon: &[DVec2], step: f64) -> Vec<DVec2> {
 /// The same boundary with points added on its edges, so that none is longer than `longest`.
 #[must_use]
 pub fn subdivided(polygon: &[DVec2], longest: f64) -> Vec<DVec2> {
-    let pieces = |a: DVec2, b: DVec2| (a.distance(b) / longest).ceil().max(1.0) as usize;
-    edges(polygon)
-        .flat_map(|(a, b)| {
-            let n = pieces(a, b);
-            (0..n).map(move |i| a.lerp(b, i as f64 / n as f64))
-        })
-        .collect()
+    edges(polygon).flat_map(|(a, b)| pieces(a, b, longest)).collect()
+}
+
+/// Points from `a` to before `b`, no two farther apart than `longest`.
+pub fn pieces(a: DVec2, b: DVec2, longest: f64) -> impl Iterator<Item = DVec2> {
+    let n = (a.distance(b) / longest).ceil().max(1.0) as usize;
+    (0..n).map(move |i| a.lerp(b, i as f64 / n as f64))
 }
 
 /// The polygon without vertices that follow another within `least` (the last against the first

@@ -11,8 +11,11 @@
 //! tissue never disappears again (`marginal`).
 
 mod marginal;
+mod metric;
 mod overlap;
+mod rates;
 mod scales;
+mod warp;
 
 use glam::DVec2;
 
@@ -21,7 +24,11 @@ use crate::geometry::segments::SegmentIndex;
 use crate::margin::{Margin, MarginError};
 use crate::parameter::{parameters, words};
 use marginal::Sweep;
+pub use metric::{Frame, Metric};
+use rates::Rates;
+pub use rates::{EvenGrowth, RateAxes, RatePattern, RateSpec};
 use scales::Schedule;
+use warp::Warp;
 
 words! {
     /// How the blade grows (Foster, appendix B.2).
@@ -34,13 +41,15 @@ words! {
         Isotropic = "isotropic",
         /// Different rates across and along; what is inside is carried along.
         Anisotropic = "anisotropic",
+        /// At rates that differ with place and age (`growth.rates`); what is inside is carried along.
+        NonUniform = "non-uniform",
     }
 }
 
 parameters! {
     /// Growth of the blade, in steps (Foster, appendix B.2).
     pub struct GrowthSpec {
-        /// How the blade grows: `none`, `marginal`, `isotropic` or `anisotropic`.
+        /// How the blade grows: `none`, `marginal`, `isotropic`, `anisotropic` or `non-uniform`.
         r#type: choice(GrowthType, GrowthType::Isotropic),
         /// Steps from the first margin to the mature one (not for anisotropic growth).
         total_steps: count(400, 1..=100_000, "steps"),
@@ -52,6 +61,8 @@ parameters! {
         start_step: count(100, 0..=100_000, "steps"),
         /// Share of the steps that are made: below 1 the leaf stays a bud of that age.
         scale: number(1.0, 0.01..=1.0, ""),
+        /// Rates by place and age, for `type = "non-uniform"`.
+        rates: group(RateSpec, RateSpec::default()),
     }
 }
 
@@ -79,40 +90,6 @@ pub enum GrowthError {
     },
 }
 
-/// How lengths are measured at one age, in the frame of the mature leaf.
-///
-/// The distance of two points is |(a − b)·`stretch`|, and a length of the current leaf is
-/// `per_mm` times as long in that measure. Uniform growth keeps `stretch` at one, so that distances
-/// stay valid from step to step and only the lengths of the model shrink.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Metric {
-    /// Factors on x and y.
-    pub stretch: DVec2,
-    /// What a current millimetre measures.
-    pub per_mm: f64,
-}
-
-impl Metric {
-    /// The squared distance of two points.
-    #[must_use]
-    pub fn distance_squared(&self, a: DVec2, b: DVec2) -> f64 {
-        ((a - b) * self.stretch).length_squared()
-    }
-
-    /// The measure of a length of the current leaf.
-    #[must_use]
-    pub fn length(&self, mm: f64) -> f64 {
-        mm * self.per_mm
-    }
-
-    /// Half width and height, in the frame of the mature leaf, of the box around a circle of the
-    /// given measure.
-    #[must_use]
-    pub fn reach(&self, measure: f64) -> DVec2 {
-        DVec2::splat(measure) / self.stretch
-    }
-}
-
 /// A blade at every age. Points are in the frame of the mature leaf.
 ///
 /// # Guarantees
@@ -131,7 +108,11 @@ pub struct GrowingBlade {
     convex: bool,
     /// The margin that passes over the tissue, under marginal growth.
     sweep: Option<Sweep>,
+    /// Under non-uniform growth.
+    rates: Option<Rates>,
+    carries_tissue: bool,
     finished: Margin,
+    present: Margin,
 }
 
 impl GrowingBlade {
@@ -144,18 +125,35 @@ impl GrowingBlade {
         let schedule = Schedule::new(spec)?;
         let lines = margin.cuts().iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
         let cuts = SegmentIndex::new(lines.collect());
-        let sweep = (spec.r#type == GrowthType::Marginal).then(|| Sweep::new(margin.outline()));
+        let rates = (spec.r#type == GrowthType::NonUniform)
+            .then(|| Rates::new(&spec.rates, margin.bounds(), margin.apex().y))
+            .transpose()?;
+        rates.as_ref().map_or(Ok(()), |rates| rates.check(&schedule))?;
+        let passes = match &rates {
+            Some(rates) => rates.at_margin() > 0.0,
+            None => spec.r#type == GrowthType::Marginal,
+        };
+        let sweep = passes.then(|| Sweep::new(margin.outline()));
+        let carries_tissue = match &rates {
+            Some(rates) => rates.is_field() || rates.scale(&schedule, 0) != DVec2::ONE,
+            None => matches!(spec.r#type, GrowthType::Isotropic | GrowthType::Anisotropic),
+        };
         let mut blade = Self {
             edges: SegmentIndex::of_polygon(margin.outline()),
             cuts,
             convex: margin.cuts().is_empty() && polygon::is_convex(margin.outline()),
             sweep,
+            rates,
+            carries_tissue,
             schedule,
             spec: spec.clone(),
             finished: margin.clone(),
+            present: margin.clone(),
             margin,
         };
-        blade.finished = blade.at(blade.last_step())?;
+        let last = blade.last_step();
+        blade.present = blade.passed_margin(last)?;
+        blade.finished = blade.at(last)?;
         Ok(blade)
     }
 
@@ -189,33 +187,106 @@ impl GrowingBlade {
         self.schedule.last
     }
 
-    /// Size of the outline at a step, across and along, relative to the mature one.
+    /// The step at which the blade is mature; after the last one of a bud.
+    #[must_use]
+    pub fn mature_step(&self) -> u64 {
+        self.schedule.total()
+    }
+
+    /// What there is of the mature leaf at the last step, where tissue lies in the mature leaf.
+    #[must_use]
+    pub fn present(&self) -> &Margin {
+        &self.present
+    }
+
+    /// Size of the outline at a step, across and along, relative to the mature one; under non-uniform
+    /// growth that of the box around it.
     #[must_use]
     pub fn scale_at(&self, step: u64) -> DVec2 {
-        self.schedule.scale(step)
+        if let Some(warp) = self.warp(step) {
+            let bounds = self.margin.bounds();
+            let (low, high) = warp.corners(bounds);
+            let outline = self.margin.outline().iter();
+            let reach = outline.map(|p| warp.place(*p).x.abs()).fold(0.0, f64::max);
+            let widest = bounds.max.x.max(-bounds.min.x);
+            return DVec2::new(reach / widest, (high - low).y / bounds.size().y)
+                * self.passed(step);
+        }
+        match &self.rates {
+            Some(rates) => rates.scale(&self.schedule, step) * self.passed(step),
+            None => self.schedule.scale(step),
+        }
+    }
+
+    /// Scale of the tissue, across and along, where it is the same everywhere.
+    fn tissue_scale(&self, step: u64) -> DVec2 {
+        match &self.rates {
+            _ if !self.carries_tissue || self.is_warped() => DVec2::ONE,
+            Some(rates) => rates.scale(&self.schedule, step),
+            None => self.schedule.scale(step),
+        }
+    }
+
+    /// How large the tissue is, by area and relative to the mature leaf, where it is largest.
+    #[must_use]
+    pub fn greatest_area_scale(&self, step: u64) -> f64 {
+        match self.warp(step) {
+            Some(warp) => warp.greatest_area_scale(),
+            None => self.tissue_scale(step).element_product(),
+        }
+    }
+
+    /// How far the margin has come that passes over the tissue, relative to the mature one.
+    fn passed(&self, step: u64) -> f64 {
+        match (&self.sweep, &self.rates) {
+            (None, _) => 1.0,
+            (_, Some(rates)) => rates.passed(&self.schedule, step),
+            (_, None) => self.schedule.scale(step).x,
+        }
+    }
+
+    /// The map to the leaf of a step; `None` where all scales are alike, as in the mature leaf.
+    fn warp(&self, step: u64) -> Option<Warp> {
+        let is_mature = step >= self.schedule.total();
+        self.rates.as_ref().filter(|_| !is_mature)?.warp(&self.schedule, step)
     }
 
     /// Whether points inside move with the blade.
     #[must_use]
     pub fn carries_tissue(&self) -> bool {
-        matches!(self.spec.r#type, GrowthType::Isotropic | GrowthType::Anisotropic)
+        self.carries_tissue
+    }
+
+    /// Whether the blade has its full size from the first step on.
+    #[must_use]
+    pub fn is_full_size(&self) -> bool {
+        !self.carries_tissue && self.passed(self.schedule.first) == 1.0
     }
 
     /// How lengths are measured at a step.
     #[must_use]
-    pub fn metric(&self, step: u64) -> Metric {
-        let scale = if self.carries_tissue() { self.scale_at(step) } else { DVec2::ONE };
+    pub fn frame(&self, step: u64) -> Frame {
+        if let Some(warp) = self.warp(step) {
+            return Frame::warped(warp);
+        }
+        let scale = self.tissue_scale(step);
         if self.deforms() {
-            Metric { stretch: scale, per_mm: 1.0 }
+            Frame::uniform(scale, 1.0)
         } else {
-            Metric { stretch: DVec2::ONE, per_mm: 1.0 / scale.x }
+            Frame::uniform(DVec2::ONE, 1.0 / scale.x)
         }
     }
 
     /// Whether the blade changes its proportions, so that what is nearest can change with age.
     #[must_use]
     pub fn deforms(&self) -> bool {
-        self.schedule.is_uneven()
+        self.carries_tissue && (self.is_warped() || self.schedule.is_uneven())
+    }
+
+    /// Whether it grows at rates that differ from place to place: then distances may also shrink.
+    #[must_use]
+    pub fn is_warped(&self) -> bool {
+        self.rates.as_ref().is_some_and(Rates::is_field)
     }
 
     /// Whether `p` lies inside the blade at a step.
@@ -228,10 +299,17 @@ impl GrowingBlade {
     /// that is after the last step.
     #[must_use]
     pub fn birth_step(&self, p: DVec2) -> Option<u64> {
-        match &self.sweep {
-            Some(sweep) => self.schedule.first_at_least(sweep.scale_reaching(p)),
-            None => Some(self.schedule.first),
+        let Some(sweep) = &self.sweep else { return Some(self.schedule.first) };
+        let scale = sweep.scale_reaching(p);
+        if self.rates.is_none() {
+            return self.schedule.first_at_least(scale);
         }
+        let (mut low, mut high) = (self.schedule.first, self.schedule.last + 1);
+        while low < high {
+            let middle = low.midpoint(high);
+            if self.passed(middle) >= scale { high = middle } else { low = middle + 1 }
+        }
+        (low <= self.schedule.last).then_some(low)
     }
 
     /// Whether `p` lies inside the mature blade.
@@ -257,7 +335,7 @@ impl GrowingBlade {
     #[must_use]
     pub fn blocks_sight_yet(&self, a: DVec2, b: DVec2, step: u64) -> bool {
         let Some(sweep) = &self.sweep else { return false };
-        !self.convex && sweep.touches(a, b, self.scale_at(step).x)
+        !self.convex && sweep.touches(a, b, self.passed(step))
     }
 
     /// Whether sight is never blocked: a convex blade without cuts.
@@ -266,16 +344,36 @@ impl GrowingBlade {
         self.convex
     }
 
+    /// How large the tissue at a place is, by area and relative to the mature leaf.
+    #[must_use]
+    pub fn area_scale(&self, p: DVec2, step: u64) -> f64 {
+        match self.warp(step) {
+            Some(warp) => warp.area_scale(p),
+            None => self.tissue_scale(step).element_product(),
+        }
+    }
+
     /// Area at a step relative to the mature blade.
     ///
     /// # Errors
     ///
     /// As [`at`](Self::at), under marginal growth.
     pub fn area_share(&self, step: u64) -> Result<f64, GrowthError> {
-        if self.sweep.as_ref().is_some_and(|sweep| !sweep.is_plain()) {
+        if self.is_warped() || self.sweep.as_ref().is_some_and(|sweep| !sweep.is_plain()) {
             return Ok(self.at(step)?.area_mm2() / self.margin.area_mm2());
         }
-        Ok(self.schedule.scale(step).element_product())
+        Ok(self.scale_at(step).element_product())
+    }
+
+    /// What the margin has passed at a step, where tissue lies in the mature leaf.
+    fn passed_margin(&self, step: u64) -> Result<Margin, GrowthError> {
+        let scale = self.passed(step);
+        match &self.sweep {
+            Some(sweep) if scale != 1.0 => sweep
+                .margin(&self.margin, scale)
+                .map_err(|source| GrowthError::Margin { step, source }),
+            _ => Ok(self.margin.clone()),
+        }
     }
 
     /// The blade at a step as a margin, at the size it then has.
@@ -284,16 +382,30 @@ impl GrowingBlade {
     ///
     /// [`GrowthError::Margin`] when it is too small to be a margin.
     pub fn at(&self, step: u64) -> Result<Margin, GrowthError> {
-        let scale = self.scale_at(step);
-        if scale == DVec2::ONE {
-            return Ok(self.margin.clone());
+        let there = self.passed_margin(step)?;
+        let frame = self.frame_of_leaf(step);
+        let metric = frame.metric();
+        if !metric.is_warped() && metric.stretch == DVec2::ONE {
+            return Ok(there);
         }
-        let made = if let Some(sweep) = &self.sweep {
-            sweep.margin(&self.margin, scale.x)
+        let outline = there.to_outline();
+        let outline = if metric.is_warped() {
+            // Straight edges become bent ones.
+            let longest = self.margin.length_mm() * FINENESS;
+            outline.mapped(longest, |p| metric.place(p))
         } else {
-            Margin::from_outline(self.margin.to_outline().scaled(scale), "change growth.type")
+            outline.scaled(metric.stretch)
         };
+        let made = Margin::from_outline(outline, "change growth.type");
         made.map_err(|source| GrowthError::Margin { step, source })
+    }
+
+    /// The map from the mature leaf to that of a step, in its own size.
+    fn frame_of_leaf(&self, step: u64) -> Frame {
+        match self.warp(step) {
+            Some(warp) => Frame::warped(warp),
+            None => Frame::uniform(self.tissue_scale(step), 1.0),
+        }
     }
 
     /// Where a point of the blade at step `from` lies at step `to`, in the leaf's own size.
@@ -302,13 +414,17 @@ impl GrowingBlade {
         if from == to || !self.carries_tissue() {
             return point;
         }
-        point * (self.scale_at(to) / self.scale_at(from))
+        if !self.is_warped() {
+            return point * (self.tissue_scale(to) / self.tissue_scale(from));
+        }
+        let mature = self.warp(from).map_or(point, |young| young.unplace(point));
+        self.warp(to).map_or(mature, |old| old.place(mature))
     }
 
     /// Where a place of the mature leaf lies in the finished one.
     #[must_use]
     pub fn finished_from_mature(&self, p: DVec2) -> DVec2 {
-        if self.carries_tissue() { p * self.scale_at(self.last_step()) } else { p }
+        self.frame_of_leaf(self.last_step()).metric().place(p)
     }
 
     /// Where a vein that enters at the base begins: just inside the blade at every age, so that
@@ -325,6 +441,10 @@ impl GrowingBlade {
         inward * (self.margin.length_mm() * ROOT_INSET)
     }
 }
+
+/// Edges of a young blade under non-uniform growth are cut to this, in lengths: what is lost between
+/// the bent and the straight one is a hundred-thousandth of that.
+const FINENESS: f64 = 5e-4;
 
 /// How far inside the base a root lies, in lengths of the blade: invisible (0.1 µm in a leaf of
 /// 100 mm), yet a million times the rounding of a coordinate.

@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 
-use super::{GrowthError, GrowthSpec, GrowthType};
+use super::{EvenGrowth, GrowthError, GrowthSpec, GrowthType};
 
 /// More steps than this are a slip of the keyboard: the longest runs in Foster's tables have 5000.
 const MAX_STEPS: u64 = 100_000;
@@ -26,7 +26,9 @@ pub(super) struct Schedule {
 
 impl Schedule {
     pub(super) fn new(spec: &GrowthSpec) -> Result<Self, GrowthError> {
-        let anisotropic = spec.r#type == GrowthType::Anisotropic;
+        let anisotropic = spec.r#type == GrowthType::Anisotropic
+            || (spec.r#type == GrowthType::NonUniform
+                && spec.rates.even_growth == EvenGrowth::Anisotropic);
         let axes = if anisotropic {
             [spec.horizontal_steps, spec.vertical_steps]
         } else {
@@ -66,7 +68,17 @@ impl Schedule {
         if !self.grows {
             return DVec2::ONE;
         }
-        let (t, total) = (step.min(self.total) as f64, self.total as f64);
+        self.scale_at_age(step.min(self.total) as f64)
+    }
+
+    /// Steps from the first margin to the mature one.
+    pub(super) fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// The scale at an age in steps, of a blade that grows.
+    pub(super) fn scale_at_age(&self, t: f64) -> DVec2 {
+        let total = self.total as f64;
         let along =
             |axis: u64| (1.0 + (total - axis as f64) + t * axis as f64 / total) / (1.0 + total);
         DVec2::new(along(self.axes[0]), along(self.axes[1]))

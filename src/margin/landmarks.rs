@@ -44,11 +44,11 @@ pub enum LandmarkKind {
 }
 
 impl LandmarkKind {
-    /// The same on a blade stretched by `scale` about the base.
+    /// The same on a blade whose points are moved.
     #[must_use]
-    pub(super) fn scaled(self, scale: DVec2) -> Self {
+    pub(super) fn mapped(self, place: impl Fn(DVec2) -> DVec2) -> Self {
         match self {
-            Self::LobeTip { origin } => Self::LobeTip { origin: origin * scale },
+            Self::LobeTip { origin } => Self::LobeTip { origin: place(origin) },
             other => other,
         }
     }

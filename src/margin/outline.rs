@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::Margin;
 use super::landmarks::Landmark;
+use crate::geometry::polygon;
 
 /// An outline of which nothing is guaranteed yet.
 ///
@@ -28,7 +29,30 @@ impl Outline {
         let cuts = self.cuts.iter_mut().flatten();
         self.points.iter_mut().chain(cuts).for_each(|p| *p *= scale);
         for landmark in &mut self.landmarks {
-            landmark.kind = landmark.kind.scaled(scale);
+            landmark.kind = landmark.kind.mapped(|p| p * scale);
+        }
+        self
+    }
+
+    /// The same with every point moved, the edges first cut to be no longer than `longest`, because
+    /// they may bend.
+    #[must_use]
+    pub fn mapped(mut self, longest: f64, place: impl Fn(DVec2) -> DVec2) -> Self {
+        let mut points = Vec::new();
+        let mut at = Vec::new();
+        for (a, b) in polygon::edges(&self.points) {
+            at.push(points.len());
+            points.extend(polygon::pieces(a, b, longest).map(&place));
+        }
+        self.points = points;
+        self.apex = at[self.apex];
+        for landmark in &mut self.landmarks {
+            landmark.vertex = at[landmark.vertex];
+            landmark.kind = landmark.kind.mapped(&place);
+        }
+        for line in &mut self.cuts {
+            let cut = line.windows(2).flat_map(|w| polygon::pieces(w[0], w[1], longest));
+            *line = cut.chain(line.last().copied()).map(&place).collect();
         }
         self
     }

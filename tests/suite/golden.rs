@@ -212,7 +212,7 @@ fn golden_growth_types() {
             panel(leaf.textures.back.base_colour, growth.word())
         })
         .collect();
-    compare("readme_growth", &sheet("growth types, seen from below", &panels, 4, 384));
+    compare("readme_growth", &sheet("growth types, seen from below", &panels, 5, 384));
 }
 
 #[test]

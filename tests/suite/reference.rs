@@ -8,7 +8,7 @@
 
 use glam::DVec2;
 use venation::geometry::scatter::PolygonScatter;
-use venation::growth::GrowingBlade;
+use venation::growth::{self, GrowingBlade};
 use venation::seed::Rng;
 use venation::veins::{Algorithm, VeinSpec};
 
@@ -51,6 +51,8 @@ struct World<'a> {
     spec: &'a VeinSpec,
     frame: Frame,
     step: u64,
+    /// How the frame of the mature leaf measures at the step.
+    measure: growth::Frame,
     positions: Vec<DVec2>,
     parents: Vec<Option<usize>>,
     joins: Vec<(usize, usize)>,
@@ -59,30 +61,47 @@ struct World<'a> {
 }
 
 impl World<'_> {
-    /// Factor from the frame of the mature leaf to this one.
-    fn scale(&self) -> DVec2 {
+    /// Where a place of the mature leaf lies in the frame.
+    fn shown(&self, p: DVec2) -> DVec2 {
         match self.frame {
-            Frame::Literal if self.blade.carries_tissue() => self.blade.scale_at(self.step),
-            _ => DVec2::ONE,
+            Frame::Literal => self.blade.carry(p, self.blade.mature_step(), self.step),
+            Frame::Mature => p,
         }
     }
 
-    fn stretch(&self) -> DVec2 {
+    /// The place of the mature leaf that lies there in the frame.
+    fn mature(&self, p: DVec2) -> DVec2 {
         match self.frame {
-            Frame::Mature => self.blade.metric(self.step).stretch,
-            Frame::Literal => DVec2::ONE,
+            Frame::Literal => self.blade.carry(p, self.step, self.blade.mature_step()),
+            Frame::Mature => p,
         }
     }
 
     fn length(&self, mm: f64) -> f64 {
         match self.frame {
-            Frame::Mature => self.blade.metric(self.step).length(mm),
+            Frame::Mature => self.measure.metric().length(mm),
             Frame::Literal => mm,
         }
     }
 
+    /// The way from `a` to `b` as it is measured.
+    fn way(&self, a: DVec2, b: DVec2) -> DVec2 {
+        match self.frame {
+            Frame::Mature => self.measure.metric().between(a, b),
+            Frame::Literal => b - a,
+        }
+    }
+
+    /// The end of a way.
+    fn end(&self, from: DVec2, way: DVec2) -> DVec2 {
+        match self.frame {
+            Frame::Mature => self.measure.metric().beyond(from, way),
+            Frame::Literal => from + way,
+        }
+    }
+
     fn distance2(&self, a: DVec2, b: DVec2) -> f64 {
-        ((a - b) * self.stretch()).length_squared()
+        self.way(a, b).length_squared()
     }
 
     /// Spawn and kill distances relative to the settings.
@@ -97,11 +116,11 @@ impl World<'_> {
     }
 
     fn inside(&self, p: DVec2) -> bool {
-        self.blade.is_inside(p / self.scale(), self.step)
+        self.blade.is_inside(self.mature(p), self.step)
     }
 
     fn hidden(&self, a: DVec2, b: DVec2) -> bool {
-        self.blade.blocks_sight(a / self.scale(), b / self.scale(), self.step)
+        self.blade.blocks_sight(self.mature(a), self.mature(b), self.step)
     }
 
     /// The nearest node, the first among equals.
@@ -118,7 +137,15 @@ impl World<'_> {
 
     fn dart(&self, scatter: &PolygonScatter, rng: &mut Rng, sources: &[DVec2]) -> Option<DVec2> {
         let (u, v) = (rng.unit(), rng.unit());
-        let p = scatter.point(u, v) * self.scale();
+        let mature = scatter.point(u, v);
+        if self.blade.is_warped() && self.step < self.blade.mature_step() {
+            // Evenly over the leaf as it is.
+            let most = self.blade.greatest_area_scale(self.step);
+            if rng.unit() * most >= self.blade.area_scale(mature, self.step) {
+                return None;
+            }
+        }
+        let p = self.shown(mature);
         let far = |q: &DVec2, mm: f64| {
             let length = self.length(mm * self.crowding());
             self.distance2(p, *q) >= length * length
@@ -132,7 +159,7 @@ impl World<'_> {
     fn sprout(&mut self, node: usize, towards: DVec2) -> Option<()> {
         let length = self.length(self.spec.node_step_mm);
         let from = self.positions[node];
-        let child = from + towards * length / self.stretch();
+        let child = self.end(from, towards * length);
         for (id, &q) in self.positions.iter().enumerate() {
             let d2 = self.distance2(child, q);
             let sibling = self.parents[id] == Some(node) && d2 < (0.25 * length) * (0.25 * length);
@@ -154,7 +181,7 @@ impl World<'_> {
     fn extend(&mut self, node: usize, callers: &[DVec2]) {
         let from = self.positions[node];
         let unit = |p: DVec2| {
-            let towards = (p - from) * self.stretch();
+            let towards = self.way(from, p);
             towards / towards.length_squared().sqrt()
         };
         let units: Vec<DVec2> = callers.iter().map(|&p| unit(p)).collect();
@@ -196,6 +223,7 @@ pub(crate) fn grow(
         spec,
         frame,
         step: first,
+        measure: blade.frame(first),
         positions: Vec::new(),
         parents: vec![None],
         joins: Vec::new(),
@@ -204,7 +232,8 @@ pub(crate) fn grow(
     let steps = blade.steps().count();
     let closing_steps =
         if world.closing { (spec.closing_share * steps as f64).round() as usize } else { steps };
-    world.positions.push(root * world.scale());
+    let root = world.shown(root);
+    world.positions.push(root);
     let scatter = PolygonScatter::new(blade.mature().outline());
     let given = !spec.sources_mm.is_empty();
     let darts_fall = !given && blade.carries_tissue();
@@ -221,12 +250,14 @@ pub(crate) fn grow(
     let mut fraction = 0.0;
     for (made, step) in blade.steps().take(most_steps).enumerate() {
         // Grow the blade and what is carried with it.
-        let before = world.scale();
+        let before = world.step;
         world.step = step;
-        if world.scale() != before {
-            let carried = world.scale() / before;
-            world.positions.iter_mut().for_each(|p| *p *= carried);
-            sources.iter_mut().for_each(|source| source.place *= carried);
+        world.measure = blade.frame(step);
+        if frame == Frame::Literal {
+            world.positions.iter_mut().for_each(|p| *p = blade.carry(*p, before, step));
+            for source in &mut sources {
+                source.place = blade.carry(source.place, before, step);
+            }
         }
         if world.closing && made >= closing_steps {
             // From here on veins end free, closer to each other.
@@ -243,17 +274,17 @@ pub(crate) fn grow(
             }
         }
         // Seed sources: those the margin has passed, and this step's darts.
-        let scale = world.scale();
         let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
             waiting.into_iter().partition(|&p| blade.is_inside(p, step));
         waiting = rest;
-        sources.extend(born.into_iter().map(|p| Source::new(p * scale)));
+        sources.extend(born.into_iter().map(|p| Source::new(world.shown(p))));
         if darts_fall {
-            fraction += spec.spawn_rate * blade.scale_at(step).element_product();
+            fraction += spec.spawn_rate * blade.greatest_area_scale(step);
             while fraction >= 1.0 {
                 fraction -= 1.0;
                 let places: Vec<DVec2> = sources.iter().map(|source| source.place).collect();
-                sources.extend(world.dart(&scatter, rng, &places).map(Source::new));
+                let dart = world.dart(&scatter, rng, &places).filter(|p| world.inside(*p));
+                sources.extend(dart.map(Source::new));
             }
         }
         // Call.

@@ -2,11 +2,13 @@
 
 use glam::DVec2;
 use proptest::prelude::*;
-use venation::growth::{GrowingBlade, GrowthSpec, GrowthType};
+use venation::growth::{
+    EvenGrowth, GrowingBlade, GrowthSpec, GrowthType, RateAxes, RatePattern, RateSpec,
+};
 use venation::margin::Margin;
 use venation::observer::{Progress, Silent};
 use venation::seed::{Rng, Seed, Stage};
-use venation::veins::{self, VeinSpec, Venation, auxin};
+use venation::veins::{self, Algorithm, VeinSpec, Venation, auxin};
 
 use super::reference::{self, Frame};
 
@@ -45,6 +47,24 @@ fn lobed() -> Margin {
     Margin::new(outline, 13, vec![cut], "").expect("a lobed margin")
 }
 
+/// Rates of any pattern, now and then with curves of their own.
+fn rates(rng: &mut Rng) -> RateSpec {
+    let pick = |rng: &mut Rng, n: usize| (rng.bits() % n as u64) as usize;
+    let curve = |rng: &mut Rng| match pick(rng, 3) {
+        0 => vec![[0.0, rng.between(0.2, 2.0)], [0.6, 1.0], [1.0, rng.between(0.2, 2.0)]],
+        _ => Vec::new(),
+    };
+    RateSpec {
+        pattern: RatePattern::ALL[pick(rng, RatePattern::ALL.len())],
+        contrast: if rng.unit() < 0.2 { 1.0 } else { rng.between(0.0, 1.0) },
+        front: rng.between(0.2, 1.5),
+        axes: RateAxes::ALL[pick(rng, RateAxes::ALL.len())],
+        even_growth: EvenGrowth::ALL[pick(rng, 2)],
+        by_place: curve(rng),
+        by_age: curve(rng),
+    }
+}
+
 /// A small random case of one kind.
 fn case(
     kind: GrowthType,
@@ -61,6 +81,7 @@ fn case(
         vertical_steps: steps,
         start_step: rng.bits() % 20,
         scale: if rng.unit() < 0.3 { rng.between(0.6, 1.0) } else { 1.0 },
+        rates: if kind == GrowthType::NonUniform { rates(rng) } else { RateSpec::default() },
     };
     let margin = if concave { lobed() } else { ellipse() };
     let mut spec = VeinSpec {
@@ -123,6 +144,44 @@ fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
 }
 
 #[test]
+fn non_uniform_growth_at_even_rates_agrees_with_the_plain_types_node_by_node() {
+    type Change = fn(&mut RateSpec);
+    let pairs: [(GrowthType, Change); 4] = [
+        (GrowthType::Isotropic, |rates| rates.contrast = 0.0),
+        (GrowthType::Anisotropic, |rates| {
+            (rates.contrast, rates.even_growth) = (0.0, EvenGrowth::Anisotropic);
+        }),
+        (GrowthType::Marginal, |rates| {
+            (rates.pattern, rates.contrast) = (RatePattern::MarginLed, 1.0);
+        }),
+        (GrowthType::None, |rates| {
+            (rates.pattern, rates.by_age) = (RatePattern::Even, vec![[0.0, 0.0]]);
+        }),
+    ];
+    for (kind, change) in pairs {
+        for (seed, margin) in [ellipse(), lobed()].into_iter().enumerate() {
+            for algorithm in [Algorithm::AuxinOpen, Algorithm::AuxinClosed] {
+                let plain = GrowthSpec { r#type: kind, total_steps: 120, ..GrowthSpec::default() };
+                let plain = GrowthSpec { start_step: 40, vertical_steps: 120, ..plain };
+                let plain = GrowthSpec { horizontal_steps: 80, ..plain };
+                let mut uneven = plain.clone();
+                uneven.r#type = GrowthType::NonUniform;
+                change(&mut uneven.rates);
+                let grow = |growth: &GrowthSpec| {
+                    let blade = GrowingBlade::new(margin.clone(), growth).expect("a blade");
+                    let spec = VeinSpec { algorithm, ..VeinSpec::default() };
+                    grown(&blade, &spec, seed as u64)
+                };
+                let (plain, uneven) = (grow(&plain), grow(&uneven));
+                assert!(plain.graph().len() > 500, "{kind}");
+                assert_eq!(plain.graph(), uneven.graph(), "{kind} {algorithm}");
+                assert_eq!(plain.unreached(), uneven.unreached(), "{kind} {algorithm}");
+            }
+        }
+    }
+}
+
+#[test]
 fn distances_that_shrink_agree_with_a_leaf_that_grows() {
     // Rounding differs, and growth is chaotic: over a few steps it must not show.
     for_all_cases(2, |name, blade, spec, seed| {
@@ -147,7 +206,7 @@ proptest! {
 
     #[test]
     fn every_pattern_keeps_its_guarantees(
-        seed in 0u64..1_000_000, kind in 0usize..4, concave: bool, reach: bool, given: bool,
+        seed in 0u64..1_000_000, kind in 0..GrowthType::ALL.len(), concave: bool, reach: bool, given: bool,
     ) {
         let mut rng = Seed(seed).stream(Stage::Tissue);
         let (blade, spec) = case(GrowthType::ALL[kind], concave, reach, given, &mut rng);

@@ -111,6 +111,23 @@ impl Claims {
         (self.near2[i], self.nearest[i], self.others2[i]) = (near2, node, others2);
     }
 
+    /// Takes note of what is nearest now, if anything is in reach.
+    pub(super) fn found(&mut self, i: usize, nearest: Option<(f64, NodeId)>) {
+        let (near2, node) = nearest.unwrap_or((f64::INFINITY, NONE));
+        if node != self.nearest[i] {
+            self.sight[i] = Sight::Unknown;
+        }
+        (self.near2[i], self.nearest[i]) = (near2, node);
+    }
+
+    /// Puts a source into the list of those in reach, though it may not be.
+    pub(super) fn watch(&mut self, source: u32) {
+        if !self.is_acting[source as usize] {
+            self.is_acting[source as usize] = true;
+            self.arrived.push(source);
+        }
+    }
+
     /// Takes note that all nodes are now farther than `search2`.
     pub(super) fn out_of_reach(&mut self, i: usize, search2: f64) {
         self.is_acting[i] = false;

@@ -98,6 +98,8 @@ pub(super) struct Calls {
     kill_mm: f64,
     step_mm: f64,
     deforms: bool,
+    /// Distances may shrink, too: every source is looked after in every step.
+    warps: bool,
     convex: bool,
 }
 
@@ -124,6 +126,7 @@ impl Calls {
             kill_mm: spec.kill_distance_mm,
             step_mm: spec.node_step_mm,
             deforms: blade.deforms(),
+            warps: blade.is_warped(),
             convex: blade.is_convex(),
         }
     }
@@ -208,10 +211,10 @@ impl Callers for Calls {
         self.positions.push(p);
         self.slots.push(self.states.len() as u32);
         self.outer2.push(around.most2());
-        let is_acting = least2.is_finite();
+        let is_acting = least2.is_finite() || self.warps;
         self.index.push();
         self.states.push(State { place: p, around, source: id, tag: NONE, is_acting });
-        if least2.is_finite() {
+        if is_acting {
             self.arrived.push(id);
         }
         if least2 <= self.kill2(metric) {
@@ -255,7 +258,13 @@ impl Callers for Calls {
                 self.store(i, around);
             }
             let around = self.states[i].around;
+            if self.warps && around.least2() <= kill2 && self.states[i].tag == NONE {
+                self.reached.push(source);
+            }
             if around.least2() > search2 {
+                if self.warps {
+                    return true;
+                }
                 // Distances only grow: those nodes will not matter again.
                 self.states[i].is_acting = false;
                 self.store(i, Around::EMPTY);
@@ -273,7 +282,7 @@ impl Callers for Calls {
                 if !is_called {
                     continue;
                 }
-                let towards = (self.states[i].place - nodes.position(node)) * metric.stretch;
+                let towards = metric.between(nodes.position(node), self.states[i].place);
                 let unit = towards / distance2.sqrt();
                 let call = self.calls.len() as u32;
                 self.calls.push(Call { unit, distance2, next: NONE });
@@ -333,7 +342,7 @@ impl Callers for Calls {
 
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached {
         let mut unreached = Unreached::default();
-        let search2 = self.search(blade.metric(blade.last_step())).powi(2);
+        let search2 = self.search(blade.frame(blade.last_step()).metric()).powi(2);
         for i in (0..self.states.len()).filter(|&i| self.outer2[i] != DEAD) {
             let hidden = |node: NodeId| {
                 let step = blade.last_step();

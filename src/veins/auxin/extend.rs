@@ -136,8 +136,9 @@ impl Nodes {
     ) -> bool {
         let p = self.position(node);
         // The box around both circles' common part.
-        let reach = metric.reach(distance2.sqrt() * (1.0 + 1e-9));
-        let (low, high) = (s.max(p) - reach, s.min(p) + reach);
+        let distance = distance2.sqrt() * (1.0 + 1e-9);
+        let (near, far) = (metric.around(s, distance), metric.around(p, distance));
+        let (low, high) = ((s - near).max(p - far), (s + near).min(p + far));
         self.far.any_near((low + high) / 2.0, (high - low) / 2.0, |id, q| {
             let other2 = metric.distance_squared(s, q);
             (other2, id) < (distance2, node) && metric.distance_squared(p, q) < distance2
@@ -147,14 +148,29 @@ impl Nodes {
     /// Whether a node is nearer to `p` than `distance`.
     pub(super) fn any_within(&self, p: DVec2, distance: f64, metric: Metric) -> bool {
         distance > 0.0
-            && self.far.any_near(p, metric.reach(distance), |_, q| {
+            && self.far.any_near(p, metric.around(p, distance), |_, q| {
                 metric.distance_squared(p, q) < distance * distance
             })
     }
 
     /// The node nearest to `p`, within a squared distance.
     pub(super) fn nearest(&self, p: DVec2, metric: Metric, limit2: f64) -> Option<Nearest> {
-        self.far.nearest(p, metric.stretch, limit2)
+        if !metric.is_warped() {
+            return self.far.nearest(p, metric.stretch, limit2);
+        }
+        let mut best = Nearest { id: NodeId::MAX, distance2: limit2, others2: limit2 };
+        self.far.for_each_outwards(
+            &mut best,
+            p,
+            |best, clear| metric.clearance(p, clear).powi(2) <= best.distance2,
+            |best, id, q| {
+                let distance2 = metric.distance_squared(p, q);
+                if (distance2, id) < (best.distance2, best.id) {
+                    *best = Nearest { id, distance2, others2: distance2 };
+                }
+            },
+        );
+        (best.id != NodeId::MAX).then_some(best)
     }
 
     /// Grows a called node towards its callers.
@@ -206,10 +222,10 @@ impl Nodes {
     ) -> Sprout {
         let from = self.position(node);
         let length = metric.length(self.step_mm);
-        let child = from + towards * length / metric.stretch;
+        let child = metric.beyond(from, towards * length);
         let siblings = (LEAST_BETWEEN_CHILDREN * length) * (LEAST_BETWEEN_CHILDREN * length);
         let others = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
-        let reach = metric.reach(LEAST_BETWEEN_CHILDREN * length);
+        let reach = metric.around(child, LEAST_BETWEEN_CHILDREN * length);
         let graph = &self.graph;
         let taken = self.near.any_near(child, reach, |id, q| {
             let d2 = metric.distance_squared(child, q);
@@ -256,8 +272,9 @@ impl Nodes {
     /// again with a step that has become shorter.
     fn overlaps(&self, node: NodeId, p: DVec2, metric: Metric) -> bool {
         let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
-        let stretched = |v: DVec2| v * metric.stretch;
-        self.web.overlaps(node, p, least, stretched, self.graph.positions())
+        let from = self.position(node);
+        let way = |p: DVec2| metric.between(from, p);
+        self.web.overlaps(node, p, least, way, self.graph.positions())
     }
 
     /// Whether two nodes are on one vein, or next to each other on two that have met.
@@ -312,7 +329,7 @@ impl Nodes {
             .iter()
             .copied()
             .find(|&node| metric.distance_squared(self.position(node), place) < least2);
-        let reach = metric.reach(LEAST_BETWEEN_NODES * length);
+        let reach = metric.around(place, LEAST_BETWEEN_NODES * length);
         let taken =
             || self.near.any_near(place, reach, |_, q| metric.distance_squared(place, q) < least2);
         if there.is_none() && taken() {

@@ -25,7 +25,7 @@ mod web;
 
 use super::graph::VeinGraph;
 use super::{Algorithm, Unreached, VeinError, VeinSpec};
-use crate::growth::{GrowingBlade, GrowthType, Metric};
+use crate::growth::{GrowingBlade, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
 use callers::Callers;
@@ -78,20 +78,21 @@ pub fn grow(
     let mut supply = Supply::new(spec, blade, closing_steps)?;
     let first = *blade.steps().start();
     let meeting = if is_closed { Meeting::Join } else { Meeting::Stop };
-    let mut nodes = Nodes::new(spec, blade, start, blade.metric(first), meeting);
+    let mut nodes = Nodes::new(spec, blade, start, blade.frame(first).metric(), meeting);
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
     let mut open = open::Calls::new(spec, blade);
     let mut closed = is_closed.then(|| closed::Calls::new(spec, blade));
     // Full size: nothing changes any more once a step has changed nothing.
-    let full_size = blade.spec().r#type == GrowthType::None;
+    let full_size = blade.is_full_size();
     let mut stands_still = false;
     let pace = (steps / 100).max(1);
     let mut made = 0;
     let mut nodes_after_step = Vec::new();
     for step in blade.steps() {
-        let metric = blade.metric(step);
+        let frame = blade.frame(step);
+        let metric = frame.metric();
         nodes.refine(metric);
         let is_closing = made < closing_steps;
         if is_closing && stands_still {
@@ -147,7 +148,7 @@ pub fn grow(
     if let Some(closed) = &mut closed {
         // Veins that have come to a source meet, though others are still on their way.
         let last = blade.last_step();
-        closed.settle(blade, last, blade.metric(last), &mut nodes);
+        closed.settle(blade, last, blade.frame(last).metric(), &mut nodes);
         if let Some(count) = nodes_after_step.last_mut() {
             *count = nodes.len() as u32;
         }
@@ -173,7 +174,8 @@ fn end_free(
     nodes: &mut Nodes,
     supply: &mut Supply<'_>,
 ) -> open::Calls {
-    let metric = blade.metric(step);
+    let frame = blade.frame(step);
+    let metric = frame.metric();
     supply.forget(&sources.settle(blade, step, metric, nodes));
     nodes.end_free();
     let mut spec = spec.clone();

@@ -100,7 +100,7 @@ impl Around {
         nodes: &Nodes,
         metric: Metric,
     ) {
-        let here = sector((p - s) * metric.stretch);
+        let here = sector(metric.between(s, p));
         // What stands in the way is within 90 degrees: never in the opposite sixth.
         let others = [1, 2, 4, 5].map(|turn| (here + turn) % SECTORS);
         let mut in_doubt = false;

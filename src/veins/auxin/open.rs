@@ -57,6 +57,8 @@ pub(super) struct Calls {
     reach_mm: f64,
     kill_mm: f64,
     deforms: bool,
+    /// Distances may shrink, too: every source is looked after in every step.
+    warps: bool,
     convex: bool,
 }
 
@@ -65,7 +67,7 @@ impl Calls {
         let unlimited = spec.attraction_distance_mm == 0.0;
         Self {
             positions: Vec::new(),
-            claims: Claims::new(blade.deforms()),
+            claims: Claims::new(blade.deforms() && !blade.is_warped()),
             next: Vec::new(),
             acting: Vec::new(),
             doomed: Vec::new(),
@@ -79,6 +81,7 @@ impl Calls {
             reach_mm: if unlimited { f64::INFINITY } else { spec.attraction_distance_mm },
             kill_mm: spec.kill_distance_mm,
             deforms: blade.deforms(),
+            warps: blade.is_warped(),
             convex: blade.is_convex(),
         }
     }
@@ -107,6 +110,9 @@ impl Calls {
         let found = nodes.nearest(p, metric, search2);
         let others2 = found.map_or(search2, |nearest| nearest.others2);
         self.claims.add(found.map(|nearest| (nearest.distance2, nearest.id)), others2);
+        if self.warps {
+            self.claims.watch(id);
+        }
         if found.is_some_and(|nearest| nearest.distance2 <= self.kill2(metric)) {
             self.doomed.push(id);
         }
@@ -178,8 +184,10 @@ impl Calls {
                 tiles.raise(self.positions[i], self.claims.bound2(i));
             }
             if distance2 > search2 {
-                self.claims.out_of_reach(i, search2);
-                return false;
+                if !self.warps {
+                    self.claims.out_of_reach(i, search2);
+                }
+                return self.warps;
             }
             // One that only the kill distance reaches calls nobody, nor does one that is touched.
             let calls = distance2 <= reach2 && distance2 > 0.0;
@@ -187,7 +195,7 @@ impl Calls {
                 return true;
             }
             let node = self.claims.nearest(i);
-            let towards = (self.positions[i] - nodes.position(node)) * metric.stretch;
+            let towards = metric.between(nodes.position(node), self.positions[i]);
             let entry = &mut self.called[node as usize];
             if entry.round != self.round {
                 let round = self.round;
@@ -209,6 +217,11 @@ impl Calls {
     /// Follows the nearest node of a source while the blade deforms.
     fn measure_again(&mut self, i: usize, nodes: &Nodes, metric: Metric, search2: f64) {
         let p = self.positions[i];
+        if self.warps {
+            let found = nodes.nearest(p, metric, search2);
+            self.claims.found(i, found.map(|nearest| (nearest.distance2, nearest.id)));
+            return;
+        }
         let distance2 = metric.distance_squared(p, nodes.position(self.claims.nearest(i)));
         if self.claims.measured(i, distance2)
             && let Some(found) = nodes.nearest(p, metric, search2.max(distance2))
@@ -252,14 +265,15 @@ impl Calls {
     /// The unit vector from the nearest node of a source to it.
     pub(super) fn unit_to(&self, source: u32, nodes: &Nodes, metric: Metric) -> DVec2 {
         let i = source as usize;
-        let towards = self.positions[i] - nodes.position(self.claims.nearest(i));
-        towards * metric.stretch / self.claims.near2(i).sqrt()
+        let from = nodes.position(self.claims.nearest(i));
+        metric.between(from, self.positions[i]) / self.claims.near2(i).sqrt()
     }
 
     /// Lets the nodes from `before` on take over the sources they are nearest to, and removes every
     /// source within the kill distance of a node; the ids of the dead.
     ///
-    /// Only a new node can kill, or an old one a newborn source: distances never shrink.
+    /// Only a new node can kill, or an old one a newborn source: distances never shrink, unless rates
+    /// of growth differ from place to place.
     pub(super) fn take_over(&mut self, before: usize, nodes: &Nodes, metric: Metric) -> Vec<u32> {
         let fresh = &nodes.positions()[before..];
         let kill2 = self.kill2(metric);
@@ -286,6 +300,14 @@ impl Calls {
         for source in self.doomed.drain(..) {
             self.claims.kill(source);
         }
+        if self.warps {
+            for i in 0..self.acting.len() {
+                let source = self.acting[i];
+                if self.claims.near2(source as usize) <= kill2 {
+                    self.claims.kill(source);
+                }
+            }
+        }
         let dead = self.claims.take_dead();
         self.living -= dead.len();
         dead
@@ -304,7 +326,7 @@ impl Calls {
             }
         };
         // The tree knows only the frame of the mature leaf, where the circle is an ellipse.
-        let radius = metric.reach(search).max_element();
+        let radius = metric.radius(at, search);
         index.for_each_within(at, radius, |point, about2| {
             let source = indexed[point as usize];
             // Most sources around are dead or have a nearer node: do not even fetch their place.

@@ -54,7 +54,8 @@ impl<'a> Supply<'a> {
             );
             return Err(VeinError::setting("veins.spawn_rate", spec.spawn_rate, problem));
         }
-        let first = blade.metric(*blade.steps().start());
+        let frame = blade.frame(*blade.steps().start());
+        let first = frame.metric();
         let cell = first.reach(first.length(spec.source_spawn_distance_mm)).max_element();
         let mut supply = Self {
             blade,
@@ -126,11 +127,16 @@ impl<'a> Supply<'a> {
         if darts_fall {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();
             self.spaced.refine(cell);
-            self.fraction += self.rate * self.blade.scale_at(step).element_product();
+            // As many as would fall on the whole leaf if all of it were as large as its largest part;
+            // those that fall beside the others are lost.
+            self.fraction += self.rate * self.blade.greatest_area_scale(step);
             let darts = self.fraction as u64;
             self.fraction -= darts as f64;
             for _ in 0..darts {
-                if let Some(p) = self.throw(metric, rng, nodes) {
+                let thrown = self.throw(metric, rng, nodes);
+                let is_there =
+                    |p: &DVec2| self.blade.birth_step(*p).is_some_and(|birth| birth <= step);
+                if let Some(p) = thrown.filter(is_there) {
                     self.spaced.push(p);
                     calls.add(p, nodes, metric);
                 }
@@ -153,9 +159,15 @@ impl<'a> Supply<'a> {
     fn throw(&self, metric: Metric, rng: &mut Rng, nodes: &Nodes) -> Option<DVec2> {
         let (u, v) = (rng.unit(), rng.unit());
         let p = self.scatter.point(u, v);
+        if metric.is_warped() {
+            let (here, most) = (metric.area_scale(p), metric.greatest_area_scale());
+            if rng.unit() * most >= here {
+                return None;
+            }
+        }
         let spacing = metric.length(self.spacing_mm);
         let crowded = spacing > 0.0
-            && self.spaced.any_near(p, metric.reach(spacing), |_, q| {
+            && self.spaced.any_near(p, metric.around(p, spacing), |_, q| {
                 metric.distance_squared(p, q) < spacing * spacing
             });
         let free = !crowded && !nodes.any_within(p, metric.length(self.vein_spacing_mm), metric);

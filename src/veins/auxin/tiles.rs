@@ -93,10 +93,9 @@ impl Tiles {
         metric: Metric,
         mut offer: impl FnMut(u32, u32) -> bool,
     ) {
-        let stretched: Vec<DVec2> = tips.iter().map(|p| *p * metric.stretch).collect();
+        let stretched: Vec<DVec2> = tips.iter().map(|p| metric.place(*p)).collect();
         let index = (tips.len() > FEW).then(|| PointIndex::new(&stretched));
         let half = DVec2::splat(self.side / 2.0);
-        let half_diagonal = (half * metric.stretch).length();
         let mut candidates: Vec<u32> = Vec::new();
         for (tile, members) in self.members.iter_mut().enumerate() {
             if members.is_empty() || self.bound2[tile] == 0.0 {
@@ -105,7 +104,9 @@ impl Tiles {
             // The new nodes that matter to anyone in the tile: near enough to be nearer than what a
             // member has, and, seen from the centre, not a diagonal farther than the nearest of them.
             let corner = DVec2::new((tile % self.columns) as f64, (tile / self.columns) as f64);
-            let centre = (self.bounds.min + corner * self.side + half) * metric.stretch;
+            let centre = self.bounds.min + corner * self.side + half;
+            let half_diagonal = metric.half_diagonal(centre, half);
+            let centre = metric.place(centre);
             let distance2 = |tip: u32| stretched[tip as usize].distance_squared(centre);
             let nearest2 = match &index {
                 Some(index) => index.nearest_distance2(centre),

@@ -82,19 +82,18 @@ impl Web {
     }
 
     /// Whether an edge from `node` to `p` would lie on one that the node already has: nearer to it than
-    /// `least`, in a frame that `stretched` tells.
+    /// `least`, as `way` measures from the node.
     pub(super) fn overlaps(
         &self,
         node: NodeId,
         p: DVec2,
         least: f64,
-        stretched: impl Fn(DVec2) -> DVec2,
+        way: impl Fn(DVec2) -> DVec2,
         positions: &[DVec2],
     ) -> bool {
-        let from = positions[node as usize];
-        let new = stretched(p - from);
+        let new = way(p);
         self.beside(node).any(|other| {
-            let old = stretched(positions[other as usize] - from);
+            let old = way(positions[other as usize]);
             let longer2 = new.length_squared().max(old.length_squared());
             let apart = new.perp_dot(old);
             new.dot(old) > 0.0 && apart * apart < least * least * longer2

@@ -171,7 +171,7 @@ pub fn build(spec: &VeinSpec, blade: &GrowingBlade, rng: &mut Rng) -> VeinGraph 
         return VeinGraph::new();
     }
     // Where tissue does not move a bud is the part of the leaf that is there.
-    let margin = if blade.carries_tissue() { blade.mature() } else { blade.finished() };
+    let margin = blade.present();
     let step = spec.node_step_mm.clamp(margin.length_mm() / FINEST, margin.length_mm() / 60.0);
     let inset = (INSET_STEPS * step).min(INSET * margin.length_mm());
     let ground = Ground::new(margin, blade.root(), inset);

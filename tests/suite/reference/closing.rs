@@ -176,7 +176,7 @@ impl World<'_> {
     fn overlaps(&self, node: usize, p: DVec2) -> bool {
         let least = 1e-3 * self.length(self.spec.node_step_mm);
         let from = self.positions[node];
-        let new = (p - from) * self.stretch();
+        let new = self.way(from, p);
         self.edges().into_iter().any(|(u, v)| {
             let other = if u == node {
                 v
@@ -185,7 +185,7 @@ impl World<'_> {
             } else {
                 return false;
             };
-            let old = (self.positions[other] - from) * self.stretch();
+            let old = self.way(from, self.positions[other]);
             let (long, short) = if old.length() > new.length() { (old, new) } else { (new, old) };
             short.dot(long) > 0.0 && short.perp_dot(long).abs() / long.length() < least
         })

@@ -122,6 +122,14 @@ impl Calls {
         metric: Metric,
         nodes: &mut Nodes,
     ) -> Vec<u32> {
+        if self.deforms {
+            // The blade may have grown since its neighbours were looked up.
+            for source in self.reached.clone() {
+                let Some(i) = self.slot(source) else { continue };
+                let around = self.look_around(self.states[i].place, nodes, metric);
+                self.store(i, around);
+            }
+        }
         self.settle_reached(blade, step, metric, nodes, false)
     }
 }

@@ -20,14 +20,13 @@ impl Calls {
     pub(super) fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
         let search = self.search(metric);
         let mut around = Around::EMPTY;
-        let (low, high) =
-            ((self.bounds.min - s) * metric.stretch, (self.bounds.max - s) * metric.stretch);
-        let stretch = metric.stretch.min_element();
+        let (low, high) = metric.corners_from(s, self.bounds);
         nodes.grid().for_each_outwards(
             &mut around,
             s,
             |around, clear| {
-                clear * stretch <= search && !around.is_settled(clear * stretch, low, high)
+                let clear = metric.clearance(s, clear);
+                clear <= search && !around.is_settled(clear, low, high)
             },
             |around, node, p| {
                 let distance2 = metric.distance_squared(s, p);
@@ -96,9 +95,8 @@ impl Calls {
         };
         if search.is_finite() {
             // The tree knows only the frame of the mature leaf, where the circle is an ellipse.
-            let radius = metric.reach(search).max_element();
-            let scale2 = metric.stretch.min_element().powi(2);
-            index.for_each_within(p, radius, |slot, about2| offer(slot, about2 * scale2));
+            let radius = metric.radius(p, search);
+            index.for_each_within(p, radius, |slot, about2| offer(slot, metric.at_least(about2)));
         } else {
             (0..slots).for_each(|slot| offer(slot, 0.0));
         }

@@ -199,10 +199,12 @@ impl Cutter<'_> {
         upper[end].round = self.form.sinus_rounding * half;
         upper.remove(0);
         let (bristle, gland) = (self.form.bristle_mm, 0.5 * self.form.gland_mm);
+        // Small teeth carry small ornaments: a tooth that fades, or comes up in a morph, has none yet.
         let fade = (tooth.depth * 10.0).min(1.0);
-        if order == 1 && bristle > 0.0 {
+        let (bristle, gland) = (bristle.min(MOST_BRISTLE * width), gland.min(MOST_GLAND * width));
+        if order == 1 && bristle > 0.0 && fade > 0.0 {
             add_bristle(lower, upper, tip, bristle * fade);
-        } else if order == 1 && gland > 0.0 {
+        } else if order == 1 && gland > 0.0 && fade > 0.0 {
             add_gland(lower, upper, gland * fade, frame.run.outward);
         }
         // The first point of the lower flank is there already.
@@ -298,6 +300,10 @@ impl Frame<'_> {
         self.run.at(s) + out * p.y
     }
 }
+
+/// A bristle is at most this long, a gland's radius at most this large, in widths of the tooth.
+const MOST_BRISTLE: f64 = 1.0;
+const MOST_GLAND: f64 = 0.25;
 
 /// A bristle is this wide at its foot, in its lengths.
 const BRISTLE_WIDTH: f64 = 0.12;

@@ -7,7 +7,7 @@
 
 use super::parametric::SideSpec;
 use super::{MarginSpec, build};
-use crate::parameter::{Kind, Parameters};
+use crate::parameter::{Kind, Parameters, RECORD};
 use crate::seed::Seed;
 
 /// Shares of the percentage that are tried, one after the other: the last gives the leaf itself.
@@ -23,23 +23,10 @@ pub fn instance(spec: &MarginSpec, percent: f64, seed: Seed) -> MarginSpec {
 
 fn perturbed(spec: &MarginSpec, percent: f64, seed: Seed) -> MarginSpec {
     let mut tree = toml::Value::try_from(spec).expect("settings are plain data");
-    for parameter in MarginSpec::parameters() {
-        let mut node = Some(&mut tree);
-        for part in parameter.key.split('.') {
-            node = node.and_then(|node| node.get_mut(part));
-        }
-        let unit = seed.parameter(&format!("vary/margin.{}", parameter.key)).unit();
-        let factor = 1.0 + percent / 100.0 * (2.0 * unit - 1.0);
-        match (&parameter.kind, node) {
-            (Kind::Number { min, max, .. }, Some(toml::Value::Float(x))) => {
-                *x = (*x * factor).clamp(*min, *max);
-            }
-            (Kind::Count { min, max, .. }, Some(toml::Value::Integer(n))) => {
-                let moved = (*n as f64 * factor).round().clamp(*min as f64, *max as f64);
-                *n = moved as i64;
-            }
-            _ => {}
-        }
+    for parameter in MarginSpec::parameters().iter().filter(|p| p.key != LOBES) {
+        let key = format!("vary/margin.{}", parameter.key);
+        let path: Vec<&str> = parameter.key.split('.').collect();
+        perturb(&mut tree, &path, &parameter.kind, &key, percent, seed);
     }
     let mut spec: MarginSpec = tree.try_into().expect("the same settings with other numbers");
     for side in [&mut spec.right, &mut spec.left] {
@@ -49,6 +36,45 @@ fn perturbed(spec: &MarginSpec, percent: f64, seed: Seed) -> MarginSpec {
     spec.teeth.to = spec.teeth.to.max(spec.teeth.from + LEAST_ZONE).min(1.0);
     spec.teeth.from = spec.teeth.from.min(spec.teeth.to - LEAST_ZONE);
     spec
+}
+
+/// The number of lobes is the kind of leaf, not a measure of it.
+const LOBES: &str = "lobing.count";
+
+/// Moves the number at a path, in every record of a list on the way.
+fn perturb(
+    node: &mut toml::Value,
+    path: &[&str],
+    kind: &Kind,
+    key: &str,
+    percent: f64,
+    seed: Seed,
+) {
+    match (path, &mut *node) {
+        ([RECORD, rest @ ..], toml::Value::Array(records)) => {
+            for (i, record) in records.iter_mut().enumerate() {
+                perturb(record, rest, kind, &format!("{key}/{}", i + 1), percent, seed);
+            }
+        }
+        ([first, rest @ ..], node) => {
+            if let Some(node) = node.get_mut(*first) {
+                perturb(node, rest, kind, key, percent, seed);
+            }
+        }
+        ([], node) => {
+            let factor = 1.0 + percent / 100.0 * (2.0 * seed.parameter(key).unit() - 1.0);
+            match (kind, node) {
+                (Kind::Number { min, max, .. }, toml::Value::Float(x)) => {
+                    *x = (*x * factor).clamp(*min, *max);
+                }
+                (Kind::Count { min, max, .. }, toml::Value::Integer(n)) => {
+                    let moved = (*n as f64 * factor).round().clamp(*min as f64, *max as f64);
+                    *n = moved as i64;
+                }
+                _ => {}
+            }
+        }
+    }
 }
 
 /// Teeth stand on at least this part of an edge.

@@ -23,7 +23,7 @@ mod tests;
 
 use glam::DVec2;
 
-use super::{Landmark, Margin, MarginError, MarginSpec, Outline, parametric};
+use super::{Landmark, Margin, MarginError, MarginSpec, Outline, curve};
 use crate::geometry::polygon;
 use crate::seed::{Seed, Stage};
 use cut::{Cutter, Node};
@@ -159,7 +159,7 @@ impl Edges {
 
     /// The outline with teeth cut into every edge.
     fn cut(&self, outline: &Outline, teeth: &[Vec<Tooth>], form: &ToothForm) -> Detailed {
-        let tolerance = parametric::TOLERANCE * outline.points[outline.apex].y;
+        let tolerance = curve::TOLERANCE * outline.points[outline.apex].y;
         let mut cutter = Cutter { form, tolerance, parts: 0 };
         let mut nodes: Vec<Node> = Vec::with_capacity(outline.points.len());
         let mut apex = 0;

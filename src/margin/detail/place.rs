@@ -14,7 +14,7 @@ pub struct Tooth {
     /// How high it stands over its sinuses, in its own widths.
     pub depth: f64,
     /// Smaller teeth on the flank towards the base, and on the one towards the tip.
-    pub flanks: [Vec<Tooth>; 2],
+    pub flanks: [Vec<Self>; 2],
 }
 
 /// What all teeth of a leaf have in common: the effective numbers behind a [`ToothType`].

@@ -12,6 +12,8 @@
 
 mod space;
 mod teeth;
+#[cfg(test)]
+mod tests;
 
 use glam::DVec2;
 
@@ -86,8 +88,10 @@ impl MorphPath {
                 .map(|(spec, outline)| detail::plan(outline, spec, seed))
                 .collect::<Result<_, _>>()?;
             let edges = plans[0].len();
-            let by_edge = (0..edges).map(|e| plans.iter().map(|plan| plan[e].clone()).collect());
-            (entire, Some(by_edge.map(teeth::unified).collect()))
+            let of_edge = |e: usize| -> Vec<Vec<Tooth>> {
+                plans.iter().map(|plan| plan[e].clone()).collect()
+            };
+            (entire, Some((0..edges).map(|e| teeth::unified(&of_edge(e))).collect()))
         } else {
             let built: Result<Vec<Outline>, MarginError> =
                 specs.iter().map(|spec| Ok(super::build(spec, seed)?.to_outline())).collect();
@@ -123,13 +127,11 @@ impl MorphPath {
             return super::build(&self.specs[end], self.seed);
         }
         let shares = nurbs::shares(&self.weights, u);
-        let mix = |value: &dyn Fn(usize) -> f64| -> f64 {
-            shares.iter().enumerate().map(|(k, share)| share * value(k)).sum()
-        };
-        let length = mix(&|k| self.specs[k].length_mm);
+        let leaves = || self.specs.iter().zip(&shares);
+        let length = leaves().map(|(spec, share)| spec.length_mm * share).sum();
         let entire = space::mixed(&self.shapes, &shares, length);
         let Some(teeth) = &self.teeth else { return Margin::from_outline(entire, HINT) };
-        let spec = self.detail_at(&mix, length);
+        let spec = self.detail_at(&shares, length);
         let plain = Margin::from_outline(entire, HINT)?;
         if detail::is_plain(&spec) {
             return Ok(plain);
@@ -141,19 +143,23 @@ impl MorphPath {
     }
 
     /// The settings of detail on the way.
-    fn detail_at(&self, mix: &dyn Fn(&dyn Fn(usize) -> f64) -> f64, length: f64) -> MarginSpec {
+    fn detail_at(&self, shares: &[f64], length: f64) -> MarginSpec {
+        let mix = |value: fn(&MarginSpec) -> f64| -> f64 {
+            self.specs.iter().zip(shares).map(|(spec, share)| value(spec) * share).sum()
+        };
         let mut spec = self.specs[self.specs.len() - 1].clone();
         spec.length_mm = length;
-        spec.asymmetry = mix(&|k| self.specs[k].asymmetry);
+        spec.asymmetry = mix(|spec| spec.asymmetry);
         if self.specs.iter().any(|spec| spec.teeth.r#type != ToothType::None) {
+            // Any type and depth: teeth are carved as planned.
             spec.teeth.r#type = ToothType::Serrate;
             spec.teeth.depth = 1.0;
         }
-        spec.waves.height = mix(&|k| self.specs[k].waves.height);
-        spec.waves.count = mix(&|k| self.specs[k].waves.count);
-        spec.waves.irregularity = mix(&|k| self.specs[k].waves.irregularity);
-        spec.roughness.height_mm = mix(&|k| self.specs[k].roughness.height_mm);
-        spec.roughness.grain_mm = mix(&|k| self.specs[k].roughness.grain_mm);
+        spec.waves.height = mix(|spec| spec.waves.height);
+        spec.waves.count = mix(|spec| spec.waves.count);
+        spec.waves.irregularity = mix(|spec| spec.waves.irregularity);
+        spec.roughness.height_mm = mix(|spec| spec.roughness.height_mm);
+        spec.roughness.grain_mm = mix(|spec| spec.roughness.grain_mm);
         spec
     }
 

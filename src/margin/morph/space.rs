@@ -133,7 +133,7 @@ pub(super) fn unified(outlines: &[Outline], sides: &[Option<[SideSpec; 2]>]) -> 
     let mut turns = Vec::new();
     let mut index = 0;
     for (j, shares) in stations.iter().enumerate() {
-        if j > 0 && marks_apex(model, &marks, j, &rings) {
+        if j > 0 && is_apex(&rings, &marks, j) {
             apex = index;
         }
         if let Some(turn) = turn_at(model, j, most) {
@@ -189,7 +189,7 @@ fn marks_position(model: &Ring, turn: &Turn) -> Option<usize> {
 }
 
 /// Whether mark `j` is the apex: it is in every outline.
-fn marks_apex(_model: &Ring, marks: &[Vec<f64>], j: usize, rings: &[Ring]) -> bool {
+fn is_apex(rings: &[Ring], marks: &[Vec<f64>], j: usize) -> bool {
     rings.iter().zip(marks).all(|(ring, marks)| marks[j] == ring.ways[ring.apex])
 }
 

@@ -6,14 +6,15 @@ use super::super::detail::{Tooth, ToothForm, ToothType};
 /// The same number of teeth for every leaf, each with its counterparts in the same place of the
 /// lists. Where a leaf has fewer, the missing ones have no width, between those that are there; where
 /// it has none, they have no height.
-pub(super) fn unified(lists: Vec<Vec<Tooth>>) -> Vec<Vec<Tooth>> {
+pub(super) fn unified(lists: &[Vec<Tooth>]) -> Vec<Vec<Tooth>> {
     let most = lists.iter().map(Vec::len).max().unwrap_or(0);
     let model = lists.iter().find(|list| list.len() == most).cloned().unwrap_or_default();
     let mut all: Vec<Vec<Tooth>> = lists.iter().map(|list| filled(list, &model)).collect();
     for j in 0..most {
         for flank in 0..2 {
-            let small = all.iter().map(|list| list[j].flanks[flank].clone()).collect();
-            for (list, small) in all.iter_mut().zip(unified(small)) {
+            let small: Vec<Vec<Tooth>> =
+                all.iter().map(|list| list[j].flanks[flank].clone()).collect();
+            for (list, small) in all.iter_mut().zip(unified(&small)) {
                 list[j].flanks[flank] = small;
             }
         }
@@ -133,7 +134,7 @@ mod tests {
 
     #[test]
     fn teeth_without_counterpart_have_no_width_and_leave_no_gap() {
-        let all = unified(vec![row(3), row(7), row(5)]);
+        let all = unified(&[row(3), row(7), row(5)]);
         assert!(all.iter().all(|list| list.len() == 7));
         assert_eq!(all[1], row(7));
         for (list, real) in [(&all[0], 3), (&all[2], 5)] {
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_leaf_without_teeth_has_flat_ones() {
-        let all = unified(vec![Vec::new(), row(4)]);
+        let all = unified(&[Vec::new(), row(4)]);
         assert!(all[0].iter().all(|tooth| tooth.depth == 0.0 && tooth.to > tooth.from));
     }
 }

@@ -49,7 +49,7 @@ impl Node {
 /// Parts without teeth shrink in pieces of this share of an edge.
 const PIECES: f64 = 24.0;
 
-/// The frame of a tooth follows the edge over this share of its width.
+/// The frame of a tooth follows the edge over this share of the width of the row's teeth.
 const FRAME: f64 = 0.15;
 
 /// A full bow stands out of a flank by this share of its length, a full flexure by this.
@@ -94,26 +94,30 @@ impl Cutter<'_> {
         let mut nodes = Vec::new();
         let mut at = 0.0;
         // The plain part below the first tooth, then every tooth with the sinus below it.
-        let mut sink = 0.0;
+        let row = Row::of(&teeth, length);
         for (i, tooth) in teeth.iter().enumerate() {
             let (from, to) = (tooth.from * length, tooth.to * length);
-            if i == 0 || from - at > least {
+            let joined = [i > 0 && from - at <= least, {
+                let next = teeth.get(i + 1);
+                next.is_some_and(|next| next.from * length - to <= least)
+            }];
+            if !joined[0] {
                 self.plain(&mut nodes, run, at, from, part);
-                sink = 0.0;
             }
-            let high = 0.5 * tooth.depth * (to - from);
-            let next = teeth.get(i + 1).filter(|next| next.from * length - to <= least);
-            let next_sink = next.map_or(0.0, |next| {
-                -0.5 * (high + 0.5 * next.depth * (next.to - next.from) * length)
-            });
+            let high = tooth.depth * (to - from);
+            let ends = [(from, joined[0]), (to, joined[1])];
+            let sinks = ends.map(|(way, joined)| if joined { row.sink(way) } else { 0.0 });
+            // Over its sinuses; at the end of a row as if there were another tooth.
+            let feet = [0, 1].map(|k| if joined[k] { sinks[k] } else { -0.5 * high });
+            let tip = 0.5 * (feet[0] + feet[1]) + high;
             let own = part.unwrap_or(self.parts as f64);
             if part.is_none() {
                 self.parts += 1;
             }
-            let frame = Frame { run, from, width: to - from };
+            let frame = Frame { run, from, width: to - from, reach: FRAME * row.width };
             let rank = Rank { part: Some(own), ..rank };
-            self.tooth(&mut nodes, &frame, tooth, [sink, high, next_sink], rank);
-            (at, sink) = (to, next_sink);
+            self.tooth(&mut nodes, &frame, tooth, [sinks[0], tip, sinks[1]], rank);
+            at = to;
         }
         self.plain(&mut nodes, run, at, length, part);
         nodes
@@ -285,18 +289,60 @@ impl Cutter<'_> {
     }
 }
 
+/// A row of teeth, from which the depth of its sinuses comes: teeth so small that they are hardly
+/// there (in a morph, before they come up) leave the sinuses of the others as they were.
+struct Row {
+    /// Beginning, end and half height of every tooth (mm).
+    teeth: Vec<(f64, f64, f64)>,
+    /// The mean width of a place on the row (mm).
+    width: f64,
+}
+
+impl Row {
+    fn of(teeth: &[&Tooth], length: f64) -> Self {
+        let teeth: Vec<(f64, f64, f64)> = teeth
+            .iter()
+            .map(|tooth| {
+                let (from, to) = (tooth.from * length, tooth.to * length);
+                (from, to, 0.5 * tooth.depth * (to - from))
+            })
+            .collect();
+        let widths = || teeth.iter().map(|(from, to, _)| to - from);
+        let total: f64 = widths().sum();
+        let width = if total > 0.0 { widths().map(|w| w * w).sum::<f64>() / total } else { 0.0 };
+        Self { teeth, width }
+    }
+
+    /// How far a sinus lies from the edge (mm out): the mean half height of what stands within half a
+    /// width of it, less towards the ends of the row.
+    fn sink(&self, way: f64) -> f64 {
+        let reach = 0.5 * self.width;
+        let (mut sum, mut covered) = (0.0, 0.0);
+        for &(from, to, half) in &self.teeth {
+            let overlap = (to.min(way + reach) - from.max(way - reach)).max(0.0);
+            sum += half * overlap;
+            covered += overlap;
+        }
+        let (Some(first), Some(last)) = (self.teeth.first(), self.teeth.last()) else { return 0.0 };
+        let end = (way - first.0).min(last.1 - way).max(0.0);
+        if covered > 0.0 { -sum / covered * (end / reach).min(1.0) } else { 0.0 }
+    }
+}
+
 /// The place of a tooth on its edge.
 struct Frame<'a> {
     run: &'a Run,
     from: f64,
     width: f64,
+    /// Directions are those of the edge over this far on either side.
+    reach: f64,
 }
 
 impl Frame<'_> {
     /// A point of the tooth (mm along the edge from its beginning, mm out) in leaf space.
     fn place(&self, p: DVec2) -> DVec2 {
         let s = self.from + p.x;
-        let (_, out) = self.run.frame(s, FRAME * self.width);
+        let (_, out) = self.run.frame(s, self.reach);
         self.run.at(s) + out * p.y
     }
 }

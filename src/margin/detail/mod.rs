@@ -23,11 +23,12 @@ mod tests;
 
 use glam::DVec2;
 
+use super::lobes::{LobeRecord, LobeSide};
 use super::{Landmark, Margin, MarginError, MarginSpec, Outline, curve};
 use crate::geometry::polygon;
 use crate::seed::{Seed, Stage};
 use cut::{Cutter, Node};
-use place::Draws;
+use place::{Draws, Edge};
 pub use place::{Tooth, ToothForm};
 use run::{Run, Span};
 pub use spec::{RoughnessSpec, SmallTeethSpec, TeethSpec, ToothType, WaveSpec};
@@ -119,6 +120,16 @@ pub fn carve(
     detailed.mended(outline)
 }
 
+/// The records of the lobes of a leaf, in the order of their tips on the outline.
+fn lobes_in_order(spec: &MarginSpec) -> Vec<&LobeRecord> {
+    let on = |side: LobeSide| {
+        let there = move |lobe: &&LobeRecord| lobe.side == side || lobe.side == LobeSide::Both;
+        spec.lobe.iter().filter(there)
+    };
+    let apex = spec.lobe.iter().filter(|lobe| lobe.side == LobeSide::Apex);
+    on(LobeSide::Right).chain(apex).chain(on(LobeSide::Left).rev()).collect()
+}
+
 /// The edges of an outline, in its order.
 pub(super) struct Edges {
     spans: Vec<Span>,
@@ -145,13 +156,18 @@ impl Edges {
         if spec.teeth.r#type == ToothType::None {
             return Ok(vec![Vec::new(); self.runs.len()]);
         }
-        let edges: Vec<(f64, Draws)> = self
+        let lobes = lobes_in_order(spec);
+        let edges: Vec<Edge> = self
             .runs
             .iter()
             .zip(&self.spans)
             .map(|(run, span)| {
                 let (own, mirror) = seeds.edge(span);
-                (run.length(), Draws { own, mirror, asymmetry: spec.asymmetry })
+                let draws = Draws { own, mirror, asymmetry: spec.asymmetry };
+                let lobe = span.lobe.and_then(|lobe| lobes.get(lobe));
+                let (count, depth) =
+                    lobe.map_or((1.0, 1.0), |lobe| (lobe.teeth_count, lobe.teeth_depth));
+                Edge { length: run.length(), draws, count, depth }
             })
             .collect();
         place::teeth(&spec.teeth, &edges)

@@ -79,6 +79,17 @@ impl Draws {
     }
 }
 
+/// An edge that teeth are to stand on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edge {
+    /// Its length (mm).
+    pub(super) length: f64,
+    pub(super) draws: Draws,
+    /// Times the number of teeth, and times their depth: what its lobe says.
+    pub(super) count: f64,
+    pub(super) depth: f64,
+}
+
 /// Teeth narrower than this many of the least edges of a margin would be lost in it.
 const LEAST_EDGES: f64 = 20.0;
 
@@ -90,10 +101,7 @@ const ALIKE: f64 = 0.75;
 const DEPTH_IRREGULARITY: f64 = 0.6;
 
 /// The teeth of every edge, given its length (mm).
-pub(super) fn teeth(
-    spec: &TeethSpec,
-    edges: &[(f64, Draws)],
-) -> Result<Vec<Vec<Tooth>>, MarginError> {
+pub(super) fn teeth(spec: &TeethSpec, edges: &[Edge]) -> Result<Vec<Vec<Tooth>>, MarginError> {
     let wrong = |key: &str, value: f64, problem: String| MarginError::Landmark {
         key: format!("margin.teeth.{key}"),
         value,
@@ -103,18 +111,20 @@ pub(super) fn teeth(
         let problem = format!("is not below margin.teeth.to = {}", spec.to);
         return Err(wrong("from", spec.from, problem));
     }
-    let longest = edges.iter().map(|edge| edge.0).fold(0.0, f64::max);
+    let longest = edges.iter().map(|edge| edge.length).fold(0.0, f64::max);
     let small = [&spec.second, &spec.third];
     let finest: f64 = small.iter().map(|small| small.count as f64 + 1.0).product();
     edges
         .iter()
-        .map(|&(length, draws)| {
+        .map(|edge| {
+            let length = edge.length;
             let zone = (spec.to - spec.from) * length;
             let count = match spec.count {
                 0 => (spec.per_cm * zone / 10.0).round().max(1.0),
                 count if length >= ALIKE * longest => count as f64,
                 count => (count as f64 * length / longest).round(),
             };
+            let count = if edge.count == 1.0 { count } else { (count * edge.count).round() };
             let least = LEAST_EDGES * Margin::MIN_EDGE_MM * finest;
             let most = (zone / least).floor();
             if count > most {
@@ -129,14 +139,15 @@ pub(super) fn teeth(
                 );
                 return Err(wrong(key, value, problem));
             }
-            Ok(row(spec, count as usize, draws))
+            Ok(row(spec, count as usize, edge))
         })
         .collect()
 }
 
 /// The teeth of one edge.
-fn row(spec: &TeethSpec, count: usize, draws: Draws) -> Vec<Tooth> {
+fn row(spec: &TeethSpec, count: usize, edge: &Edge) -> Vec<Tooth> {
     let form = ToothForm::of(spec);
+    let draws = edge.draws;
     let width = |k: usize| {
         let place = (k as f64 + 0.5) / count as f64;
         (1.0 - spec.spacing_change * place) * (1.0 + spec.irregularity * draws.signed(k, 0))
@@ -151,7 +162,7 @@ fn row(spec: &TeethSpec, count: usize, draws: Draws) -> Vec<Tooth> {
         let way = (spec.to - spec.from) * (0.5 * (from + to)).min(1.0 - 0.5 * (from + to));
         let fade = if spec.end_fade > 0.0 { smoothstep(way / spec.end_fade) } else { 1.0 };
         let varied = 1.0 + DEPTH_IRREGULARITY * spec.irregularity * draws.signed(k, 1);
-        let depth = spec.depth * varied * fade;
+        let depth = spec.depth * edge.depth * varied * fade;
         let share = |t: f64| spec.from + (spec.to - spec.from) * t;
         let small = [(&spec.second, 2), (&spec.third, 3)];
         teeth.push(Tooth {

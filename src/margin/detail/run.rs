@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::super::{LandmarkKind, Outline};
+use super::super::{Landmark, LandmarkKind, Outline};
 
 /// A piece of an outline that detail is set on.
 ///
@@ -99,6 +99,8 @@ pub(super) struct Span {
     pub(super) right: bool,
     /// Counted from the base on its side.
     pub(super) number: u32,
+    /// The lobe whose tip it ends at, in the order of the tips on the outline.
+    pub(super) lobe: Option<usize>,
 }
 
 /// The runs of an anticlockwise outline, in its order: up the right side and down the left one, with
@@ -117,16 +119,25 @@ pub(super) fn spans(outline: &Outline) -> Vec<Span> {
             turns.push((mark.vertex, tip));
         }
     }
-    turns.push((outline.apex, true));
+    // A leaf of an even number of lobes has its apex in a notch.
+    let notched =
+        |mark: &Landmark| mark.vertex == outline.apex && mark.kind == LandmarkKind::Valley;
+    turns.push((outline.apex, !outline.landmarks.iter().any(notched)));
     turns.push((n, false));
     turns.sort_by_key(|turn| turn.0);
+    let is_tip = |mark: &&Landmark| matches!(mark.kind, LandmarkKind::LobeTip { .. });
+    let mut tips: Vec<usize> =
+        outline.landmarks.iter().filter(is_tip).map(|mark| mark.vertex).collect();
+    tips.sort_unstable();
     let mut spans: Vec<Span> = Vec::new();
     for pair in turns.windows(2) {
         let [(from, low), (to, _)] = pair else { continue };
         let right = *to <= outline.apex;
         // Two tips or two valleys in a row: as the side goes.
         let descends = if pair[0].1 == pair[1].1 { !right } else { *low };
-        spans.push(Span { from: *from, to: *to, descends, right, number: 0 });
+        let tip = if descends { *from } else { *to };
+        let lobe = tips.iter().position(|&vertex| vertex == tip);
+        spans.push(Span { from: *from, to: *to, descends, right, number: 0, lobe });
     }
     let rights = spans.iter().filter(|span| span.right).count();
     let lefts = spans.len() - rights;

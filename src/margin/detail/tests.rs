@@ -171,6 +171,40 @@ fn teeth_too_fine_name_the_key_the_value_and_the_bound() {
     assert_eq!(error, "margin.teeth.from = 0.9 is not below margin.teeth.to = 0.4");
 }
 
+#[test]
+fn every_lobe_has_its_own_teeth_on_both_flanks() {
+    use crate::margin::MarginKind;
+    use crate::margin::lobes::{LobeRecord, LobeSide};
+    let lobe = |side, angle_deg, teeth_count| LobeRecord {
+        side,
+        angle_deg,
+        length: 0.8,
+        teeth_count,
+        ..LobeRecord::default()
+    };
+    let mut spec = toothed(TeethSpec { count: 0, per_cm: 2.0, ..serrate() });
+    spec.kind = MarginKind::Lobed;
+    spec.lobe = vec![
+        lobe(LobeSide::Right, 60.0, 0.0),
+        lobe(LobeSide::Left, 60.0, 3.0),
+        lobe(LobeSide::Apex, 0.0, 1.0),
+    ];
+    let margin = build(&spec);
+    let valleys = margin.landmarks().iter().filter(|mark| mark.kind == LandmarkKind::Valley);
+    let valleys: Vec<usize> = valleys.map(|mark| mark.vertex).collect();
+    assert_eq!(valleys.len(), 2, "{:?}", margin.landmarks());
+    let teeth = |from: usize, to: usize| {
+        let first =
+            margin.landmarks().iter().filter(|m| m.kind == LandmarkKind::Tooth { order: 1 });
+        first.filter(|mark| (from..to).contains(&mark.vertex)).count()
+    };
+    let n = margin.outline().len();
+    let (right, apex, left) =
+        (teeth(0, valleys[0]), teeth(valleys[0], valleys[1]), teeth(valleys[1], n));
+    assert_eq!(right, 0, "none on the right lobe");
+    assert!(apex >= 6 && left > apex, "{apex} {left}");
+}
+
 /// Every knob of a group drawn from its whole range.
 fn anywhere<T: Parameters + serde::Serialize + serde::de::DeserializeOwned + Default>(
     prefix: &str,

@@ -18,6 +18,8 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// What is irregular about the margin: teeth, waves, roughness.
+    Margin,
     /// How the guided veins vary.
     Guides,
     /// How the fine veins bow.
@@ -42,6 +44,7 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Margin => "stage/margin",
             Self::Guides => "stage/guides",
             Self::Bows => "stage/bows",
             Self::Particles => "stage/particles",

@@ -103,6 +103,9 @@ pub(crate) struct LeafArgs {
     /// Other wounds on the same leaf.
     #[arg(long, value_name = "N")]
     damage_seed: Option<u64>,
+    /// Perturb every number of the margin by up to so many percent, on top of the preset's ranges.
+    #[arg(long, value_name = "PERCENT%")]
+    vary: Option<String>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]
@@ -148,6 +151,7 @@ fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
     if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
 }
 
+/// The document of a preset or a TOML file.
 pub(crate) fn read_document(leaf: &str) -> Result<Document, Failure> {
     if let Some(preset) = presets::find(leaf) {
         return Ok(preset.document()?);
@@ -171,6 +175,9 @@ impl LeafArgs {
         let mut document = read_document(&self.leaf)?;
         if let Some(length) = self.length_mm {
             document.set(&format!("margin.length_mm={length}"), "--length-mm")?;
+        }
+        if let Some(vary) = &self.vary {
+            document.set(&format!("vary={vary}"), "--vary")?;
         }
         if let Some(growth) = self.growth {
             document.set(&format!("growth.type={}", growth.word()), "--growth")?;

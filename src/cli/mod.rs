@@ -9,6 +9,7 @@ mod fit;
 mod generate;
 mod inspect;
 mod leaf_args;
+mod morph;
 mod presets;
 mod progress;
 mod seeds;
@@ -147,6 +148,8 @@ enum Command {
     Compare(Box<compare::Args>),
     /// Find the parameters of real leaves.
     Fit(Box<fit::Args>),
+    /// One leaf turning into another: frames, a strip and an animation.
+    Morph(Box<morph::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
@@ -174,6 +177,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
         Command::Fit(args) => fit::run(args, &mut context),
+        Command::Morph(args) => morph::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),

@@ -57,6 +57,9 @@ pub struct Document {
     lists: BTreeSet<String>,
     /// The seed written in the file, which the command line may override.
     pub seed: Option<u64>,
+    /// By up to how many percent every number of the margin is perturbed, on top of the ranges
+    /// (`vary = 20`); see [`crate::margin::instances`].
+    pub vary: Option<f64>,
 }
 
 impl Document {
@@ -83,6 +86,10 @@ impl Document {
     ///
     /// As [`Document::parse`].
     pub fn set(&mut self, assignment: &str, origin: &str) -> Result<(), DocumentError> {
+        if let Some(percent) = parse::variation(assignment, origin)? {
+            self.vary = Some(percent);
+            return Ok(());
+        }
         let (key, value) = parse::assignment(assignment, origin)?;
         self.insert(&key, value, origin);
         Ok(())
@@ -111,6 +118,7 @@ impl Document {
         }
         self.entries.extend(over.entries);
         self.seed = over.seed.or(self.seed);
+        self.vary = over.vary.or(self.vary);
     }
 
     /// Gives the whole outline anew: forgets every `margin.` key that was given and sets all of them.
@@ -151,7 +159,8 @@ impl Document {
         }
     }
 
-    /// One leaf: every range drawn with the seed's own stream for its key.
+    /// One leaf: every range drawn with the seed's own stream for its key, the margin perturbed by
+    /// [`vary`](Self::vary).
     ///
     /// # Errors
     ///

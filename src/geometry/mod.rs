@@ -4,6 +4,7 @@ pub mod bspline;
 pub mod deviation;
 pub mod minimise;
 pub mod noise;
+pub mod nurbs;
 pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;

@@ -5,6 +5,7 @@
 //! will write.
 
 pub mod fit;
+pub mod animation;
 pub mod graph;
 pub mod graphml;
 pub mod image;

@@ -294,7 +294,8 @@ mod tests {
 
     #[test]
     fn no_segment_stays_long_and_counts_follow() {
-        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let margin = margin::build(&MarginSpec::default(), crate::seed::Seed(1))
+            .expect("the default margin");
         let mut graph = VeinGraph::new();
         let mut tip = graph.add_root(DVec2::new(0.0, 5.0));
         for i in 1..12 {
@@ -322,7 +323,8 @@ mod tests {
 
     #[test]
     fn nothing_changes_without_smoothing() {
-        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let margin = margin::build(&MarginSpec::default(), crate::seed::Seed(1))
+            .expect("the default margin");
         let mut graph = VeinGraph::new();
         let root = graph.add_root(DVec2::new(0.0, 5.0));
         graph.sprout(root, DVec2::new(0.0, 50.0));

@@ -96,7 +96,9 @@ impl Case {
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
-                let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();
+                let pixel = (margin::build(&spec.margin, venation::seed::Seed(1))?.area_mm2()
+                    / IVY_PX2)
+                    .sqrt();
                 spec.veins.algorithm = Algorithm::Particles;
                 let particles = &mut spec.veins.particles;
                 particles.pattern = pattern;

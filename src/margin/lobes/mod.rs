@@ -113,6 +113,10 @@ parameters! {
         /// Angle between midrib and margin at the apex, where no lobe stands there and this is the
         /// last of its side.
         notch_angle_deg: number(60.0, -180.0..=180.0, "deg"),
+        /// Teeth on this lobe, times what `margin.teeth` asks for; 0 for none.
+        teeth_count: number(1.0, 0.0..=10.0, ""),
+        /// Height of the teeth on this lobe, times what `margin.teeth` asks for.
+        teeth_depth: number(1.0, 0.0..=5.0, ""),
     }
 }
 

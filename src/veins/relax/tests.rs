@@ -6,7 +6,7 @@ use crate::veins::Rank;
 use crate::veins::graph::VeinKind;
 
 fn margin() -> Margin {
-    crate::margin::build(&MarginSpec::default()).expect("the default margin")
+    crate::margin::build(&MarginSpec::default(), crate::seed::Seed(1)).expect("the default margin")
 }
 
 fn relaxing(sweeps: u64) -> VeinSpec {

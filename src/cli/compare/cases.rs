@@ -5,6 +5,7 @@ use venation::growth::GrowthType;
 use venation::margin;
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
+use venation::veins::guides::PrimaryType;
 use venation::veins::particles::patterns::Pattern;
 
 /// What differs from panel to panel.
@@ -16,6 +17,18 @@ pub(super) enum By {
     Scatter,
     /// The vein algorithms.
     Algorithm,
+    /// What makes veins straight, symmetric and ordered where growth alone makes them.
+    Emergence,
+}
+
+/// One thing more from panel to panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Emergence {
+    Plain,
+    Straight,
+    Symmetric,
+    Phases,
+    Convergence,
 }
 
 /// What one panel shows.
@@ -24,7 +37,54 @@ pub(super) enum Case {
     Growth(GrowthType),
     Scatter(Pattern, u64),
     Algorithm(Algorithm),
+    Emergence(Emergence),
 }
+
+impl Emergence {
+    const ALL: [Self; 5] =
+        [Self::Plain, Self::Straight, Self::Symmetric, Self::Phases, Self::Convergence];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Plain => "growth alone",
+            Self::Straight => "+ straightness",
+            Self::Symmetric => "+ symmetry",
+            Self::Phases => "+ phases",
+            Self::Convergence => "+ convergence",
+        }
+    }
+
+    /// Settings that the leaf does not have itself.
+    fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
+        let width = margin::build(&spec.margin)?.bounds().size().x;
+        let young = spec.growth.start_step as f64 / spec.growth.total_steps as f64;
+        let veins = &mut spec.veins;
+        veins.guides.primary = PrimaryType::None;
+        let has = |more: Self| self as u8 >= more as u8;
+        let or = |value: f64, default: f64| if value == 0.0 { default } else { value };
+        veins.straightness =
+            if has(Self::Straight) { or(veins.straightness, STRAIGHTNESS) } else { 0.0 };
+        veins.symmetry = if has(Self::Symmetric) { or(veins.symmetry, SYMMETRY) } else { 0.0 };
+        if !has(Self::Phases) {
+            veins.phases.coarseness = 1.0;
+        } else if veins.phases.coarseness == 1.0 {
+            veins.phases.coarseness = COARSENESS;
+        }
+        let spacing = SPACING * width * young;
+        veins.convergence.spacing_mm =
+            if has(Self::Convergence) { or(veins.convergence.spacing_mm, spacing) } else { 0.0 };
+        Ok(())
+    }
+}
+
+/// What `--by emergence` takes where a leaf says nothing: veins as straight and as alike on both sides
+/// as most leaves', eight times as far apart at first.
+const STRAIGHTNESS: f64 = 0.7;
+const SYMMETRY: f64 = 0.8;
+const COARSENESS: f64 = 8.0;
+
+/// Between convergence points, in widths of the blade when veins begin.
+const SPACING: f64 = 0.3;
 
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
 const SCATTERS: [(u64, u64); 4] = [(3, 1378), (5, 500), (7, 254), (10, 125)];
@@ -43,6 +103,7 @@ impl By {
             Self::Growth => "growth",
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
+            Self::Emergence => "emergence",
         }
     }
 
@@ -51,6 +112,7 @@ impl By {
             Self::Growth => "growth types",
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
+            Self::Emergence => "veins from growth alone",
         }
     }
 
@@ -62,6 +124,7 @@ impl By {
                 .flat_map(|&(px, _)| Pattern::ALL.iter().map(move |&p| Case::Scatter(p, px)))
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
+            Self::Emergence => Emergence::ALL.map(Case::Emergence).to_vec(),
         }
     }
 
@@ -69,7 +132,7 @@ impl By {
     pub(super) fn columns(self) -> usize {
         match self {
             Self::Scatter => Pattern::ALL.len(),
-            Self::Growth | Self::Algorithm => self.cases().len(),
+            Self::Growth | Self::Algorithm | Self::Emergence => self.cases().len(),
         }
     }
 }
@@ -80,6 +143,7 @@ impl Case {
             Self::Growth(growth) => growth.to_string(),
             Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
             Self::Algorithm(algorithm) => algorithm.to_string(),
+            Self::Emergence(emergence) => emergence.word().to_owned(),
         }
     }
 
@@ -88,6 +152,7 @@ impl Case {
         match self {
             Self::Growth(growth) => spec.growth.r#type = growth,
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
+            Self::Emergence(emergence) => emergence.apply(spec)?,
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
                 let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();

@@ -7,7 +7,9 @@
 //! Each kind makes an [`Outline`]; [`Margin::from_outline`] checks it once. What the maker knows of
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
+pub mod curve;
 mod landmarks;
+pub mod lobes;
 mod outline;
 pub mod parametric;
 pub mod placement;
@@ -19,6 +21,8 @@ use glam::DVec2;
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
 pub use landmarks::{Landmark, LandmarkKind};
+use lobes::LobeRecord;
+use lobes::shorthand::LobingSpec;
 pub use outline::Outline;
 use parametric::SideSpec;
 
@@ -27,6 +31,8 @@ words! {
     pub enum MarginKind {
         /// Both sides by landmarks and tangents.
         Unilobed = "unilobed",
+        /// Several lobes, each with a vein of its own.
+        Lobed = "lobed",
         /// A polygon in millimetres.
         Polygon = "polygon",
     }
@@ -35,7 +41,8 @@ words! {
 parameters! {
     /// The outline of the blade.
     pub struct MarginSpec {
-        /// Where the outline comes from: `unilobed` (landmarks, Garg 2011) or `polygon`.
+        /// Where the outline comes from: `unilobed` (landmarks) or `lobed` (lobes along veins), both
+        /// after Garg 2011, or `polygon`.
         kind: choice(MarginKind, MarginKind::Unilobed),
         /// Length of the blade from base to apex, without petiole.
         length_mm: number(80.0, 1.0..=2000.0, "mm"),
@@ -45,6 +52,10 @@ parameters! {
         left: group(SideSpec, SideSpec::default()),
         /// How far the left side is its own: 1 as given, 0 the mirror of the right side.
         asymmetry: number(1.0, 0.0..=1.0, ""),
+        /// The lobes of a lobed leaf by the first and the last; used when no `margin.lobe` is given.
+        lobing: group(LobingSpec, LobingSpec::default()),
+        /// The lobes of a lobed leaf one by one.
+        lobe: records(LobeRecord),
         /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y; scaled to `length_mm`.
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.
@@ -125,6 +136,9 @@ pub enum MarginError {
         /// What is wrong with it and what to change.
         problem: String,
     },
+    /// The lobes make no leaf.
+    #[error("{0}")]
+    Lobes(String),
     /// A picture holds no usable outline.
     #[error("{0}")]
     Picture(String),
@@ -289,6 +303,17 @@ impl Margin {
 pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
     match spec.kind {
         MarginKind::Unilobed => parametric::unilobed(spec),
+        MarginKind::Lobed => {
+            let expanded;
+            let records = if spec.lobe.is_empty() {
+                expanded = spec.lobing.records()?;
+                &expanded
+            } else {
+                &spec.lobe
+            };
+            let outline = lobes::outline(records)?.scaled(DVec2::splat(spec.length_mm));
+            Margin::from_outline(outline, "make the lobes there narrower or shorter")
+        }
         MarginKind::Polygon => {
             let spec = spec.at_length();
             let vector = |p: &[f64; 2]| DVec2::from(*p);

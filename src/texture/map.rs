@@ -226,10 +226,16 @@ impl MapSet {
     #[must_use]
     pub fn of(maps: &[MapKind]) -> Self {
         let bit = |map: MapKind| 1 << map as u32;
+        // Normals and occlusion are read off the heights.
         let needs = |map: &MapKind| match map {
             MapKind::Opacity => 0,
+            MapKind::Normal => bit(MapKind::Normal) | bit(MapKind::Height),
+            MapKind::AmbientOcclusion => bit(MapKind::AmbientOcclusion) | bit(MapKind::Height),
             MapKind::Orm => {
-                bit(MapKind::Orm) | bit(MapKind::Roughness) | bit(MapKind::AmbientOcclusion)
+                bit(MapKind::Orm)
+                    | bit(MapKind::Roughness)
+                    | bit(MapKind::AmbientOcclusion)
+                    | bit(MapKind::Height)
             }
             &other => bit(other),
         };
@@ -262,7 +268,11 @@ mod tests {
         for map in MapKind::ALL {
             let needed = matches!(
                 map,
-                MapKind::Orm | MapKind::Roughness | MapKind::AmbientOcclusion | MapKind::BaseColour
+                MapKind::Orm
+                    | MapKind::Roughness
+                    | MapKind::AmbientOcclusion
+                    | MapKind::Height
+                    | MapKind::BaseColour
             );
             assert_eq!(set.has(*map), needed, "{map}");
         }

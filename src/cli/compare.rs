@@ -134,7 +134,8 @@ fn panel(
         let notes = vec![format!("{} particles", grown.venation.sources())];
         return Ok(Panel { picture: trails::picture(grown, side), label, notes });
     }
-    let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
+    // Veins show best from below.
+    let picture = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?.back.base_colour;
     if let Case::Emergence(_) = case {
         let Some(found) = Hierarchy::of(&grown.venation, &grown.margin) else {
             return Err(Failure::Unexpected("no midrib to measure".into()));
@@ -145,11 +146,10 @@ fn panel(
             format!("{left} left, {right} right"),
             format!("spacing varies by {:.2}", found.spacing_variation),
         ];
-        // Veins show best from below.
-        return Ok(Panel { picture: textures.back.base_colour, label, notes });
+        return Ok(Panel { picture, label, notes });
     }
     let notes = vec![nodes, format!("sinuosity {:.3}", metrics.sinuosity)];
-    Ok(Panel { picture: textures.front.base_colour, label, notes })
+    Ok(Panel { picture, label, notes })
 }
 
 fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {

@@ -195,12 +195,17 @@ impl World<'_> {
         (1, vec![self.shown(p)])
     }
 
-    /// Where a vein goes that its callers pull along a unit vector.
-    fn steered(&self, node: usize, towards: DVec2) -> DVec2 {
-        let share = match self.spec.phases.coarseness {
+    /// How much of the settings still steers veins.
+    fn share_of_steering(&self) -> f64 {
+        match self.spec.phases.coarseness {
             1.0 => 1.0,
             most => libm::log(self.coarseness()) / libm::log(most),
-        };
+        }
+    }
+
+    /// Where a vein goes that its callers pull along a unit vector.
+    fn steered(&self, node: usize, towards: DVec2) -> DVec2 {
+        let share = self.share_of_steering();
         let mut way = towards;
         let pulled = towards + DVec2::Y * (self.spec.pull * share);
         if self.spec.pull * share > 0.0 && pulled.normalize_or_zero().dot(towards) > 0.5 {
@@ -281,7 +286,8 @@ impl World<'_> {
         if pull.length() == 0.0 {
             return;
         }
-        if self.spec.straightness > 0.0 || self.spec.pull > 0.0 {
+        let is_steered = self.spec.straightness > 0.0 || self.spec.pull > 0.0;
+        if is_steered && self.share_of_steering() > 0.0 {
             let towards = self.steered(node, pull / pull.length());
             if self.sprout(node, towards).is_some() {
                 return;

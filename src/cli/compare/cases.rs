@@ -1,7 +1,7 @@
 //! What differs from panel to panel: one case each, in the order of the sheet.
 
 use venation::error::Error;
-use venation::growth::GrowthType;
+use venation::growth::{GrowthType, RatePattern};
 use venation::margin;
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
@@ -27,8 +27,9 @@ pub(super) enum Emergence {
     Plain,
     Straight,
     Symmetric,
-    Phases,
     Convergence,
+    Phases,
+    Basipetal,
 }
 
 /// What one panel shows.
@@ -41,16 +42,23 @@ pub(super) enum Case {
 }
 
 impl Emergence {
-    const ALL: [Self; 5] =
-        [Self::Plain, Self::Straight, Self::Symmetric, Self::Phases, Self::Convergence];
+    const ALL: [Self; 6] = [
+        Self::Plain,
+        Self::Straight,
+        Self::Symmetric,
+        Self::Convergence,
+        Self::Phases,
+        Self::Basipetal,
+    ];
 
     fn word(self) -> &'static str {
         match self {
             Self::Plain => "growth alone",
             Self::Straight => "+ straightness",
             Self::Symmetric => "+ symmetry",
-            Self::Phases => "+ phases",
             Self::Convergence => "+ convergence",
+            Self::Phases => "+ phases",
+            Self::Basipetal => "+ basipetal",
         }
     }
 
@@ -58,9 +66,13 @@ impl Emergence {
     fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
         let width = margin::build(&spec.margin)?.bounds().size().x;
         let young = spec.growth.start_step as f64 / spec.growth.total_steps as f64;
+        let has = |more: Self| self as u8 >= more as u8;
+        if has(Self::Basipetal) {
+            spec.growth.r#type = GrowthType::NonUniform;
+            spec.growth.rates.pattern = RatePattern::Basipetal;
+        }
         let veins = &mut spec.veins;
         veins.guides.primary = PrimaryType::None;
-        let has = |more: Self| self as u8 >= more as u8;
         let or = |value: f64, default: f64| if value == 0.0 { default } else { value };
         veins.straightness =
             if has(Self::Straight) { or(veins.straightness, STRAIGHTNESS) } else { 0.0 };

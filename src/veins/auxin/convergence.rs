@@ -56,7 +56,7 @@ const LEAST_APART: f64 = 0.35;
 
 /// A point that could only be reached at an angle so much wider than the species' (degrees) gets no
 /// strand.
-const WIDEST: f64 = 35.0;
+const WIDEST: f64 = 22.0;
 
 /// Points end this far inside the margin, in steps.
 const INSET_STEPS: f64 = 0.6;

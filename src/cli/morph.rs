@@ -255,7 +255,9 @@ fn write(args: &Args, out: &Path, frames: &[Frame], seed: Seed) -> Result<Vec<St
             let folder = folder(i);
             let title = format!("{}, frame {} of {}", frame.spec.title, i + 1, frames.len());
             let drawing = match &frame.painted {
-                Some((_, _, venation)) => svg::svg(&title, &frame.margin, Some(venation), &common, &[]),
+                Some((_, _, venation)) => {
+                    svg::svg(&title, &frame.margin, Some(venation), &common, &[])
+                }
                 None => svg::svg(&title, &frame.margin, None, &common, &[]),
             };
             let caption = image::Caption {

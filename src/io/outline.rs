@@ -18,6 +18,7 @@ use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
 use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch};
 use crate::parameter::words;
+use crate::seed::Seed;
 
 words! {
     /// What a file shows.
@@ -78,13 +79,15 @@ impl ImportedOutline {
     /// None that an outline as it was imported could cause; those of [`Margin::new`] for one that was
     /// changed.
     pub fn margin(&self) -> Result<Margin, MarginError> {
-        margin::build(&MarginSpec {
+        let spec = MarginSpec {
             kind: MarginKind::Polygon,
             length_mm: self.length_mm(),
             polygon_mm: self.polygon_mm.clone(),
             cuts_mm: self.cuts_mm.clone(),
             ..MarginSpec::default()
-        })
+        };
+        // Nothing random in it: no teeth, waves or roughness.
+        margin::build(&spec, Seed(0))
     }
 
     fn length_mm(&self) -> f64 {

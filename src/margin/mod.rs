@@ -8,8 +8,8 @@
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
 pub mod curve;
-pub mod fit;
 pub mod detail;
+pub mod fit;
 pub mod instances;
 mod landmarks;
 pub mod lobes;

@@ -26,6 +26,7 @@ use crate::margin::Margin;
 use crate::observer::Observer;
 use crate::parameter::{Kind, Parameters, parameters, words};
 use crate::seed::{Seed, Stage};
+use auxin::{ConvergenceSpec, DensitySpec, PhaseSpec};
 pub use graph::{NodeId, Rank, VeinGraph, VeinKind};
 use guides::GuideSpec;
 use particles::ParticleSpec;
@@ -82,6 +83,22 @@ parameters! {
         /// Closed venation: kill distance in the last steps, relative to that before (no less than half
         /// a step). Small, and the veinlets reach the middle of what they feed.
         veinlet_kill: number(0.7, 0.01..=2.0, ""),
+        /// How straight veins come: 0 as their sources pull them, at 1 tips keep most of their heading.
+        straightness: number(0.0, 0.0..=1.0, ""),
+        /// How strongly veins are drawn to the apex: a vein that would leave at a right angle leaves at
+        /// atan(1/pull), 45° for 1.
+        pull: number(0.0, 0.0..=3.0, ""),
+        /// Share of the darts that have a twin on the other side of the midrib; 1 for a leaf whose halves
+        /// mirror each other.
+        symmetry: number(0.0, 0.0..=1.0, ""),
+        /// How far a twin may be off its mirrored place.
+        symmetry_jitter_mm: number(0.0, 0.0..=100.0, "mm"),
+        /// Sources stand far apart at first, so that orders of veins follow each other.
+        phases: group(PhaseSpec, PhaseSpec::default()),
+        /// Points on the margin from which the first veins come.
+        convergence: group(ConvergenceSpec, ConvergenceSpec::default()),
+        /// Where darts fall more or less densely.
+        density: group(DensitySpec, DensitySpec::default()),
         /// Positions of auxin sources in the mature leaf, instead of darts.
         sources_mm: points(),
         /// Radius of the finest veins.
@@ -376,6 +393,10 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         "exponent_change" => spec.exponent_change,
         "least_radius_mm" => spec.least_radius_mm,
         "taper" => spec.taper,
+        "straightness" => spec.straightness,
+        "pull" => spec.pull,
+        "symmetry" => spec.symmetry,
+        "symmetry_jitter_mm" => spec.symmetry_jitter_mm,
         "fluctuation" => spec.fluctuation,
         _ => spec.murray_exponent,
     };
@@ -392,6 +413,7 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         }
     }
     guides::check(&spec.guides)?;
+    auxin::check(spec)?;
     // A vein steps over a source that is nearer than its step; half a step beyond, it must count as
     // reached, or the vein would turn round for ever.
     let least = spec.node_step_mm / 2.0;

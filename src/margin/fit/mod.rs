@@ -24,6 +24,7 @@ use glam::DVec2;
 use super::{Margin, MarginError, MarginKind, MarginSpec};
 use crate::geometry::deviation::{self, Distances};
 use crate::geometry::polygon;
+use crate::seed::Seed;
 use flank::{AtApex, Flank, Side};
 use half::{Extras, Half};
 use incisions::Incision;
@@ -306,7 +307,7 @@ impl<'a> Tried<'a> {
     }
 
     fn measured(&self, spec: MarginSpec, lobes: usize, numbers: usize) -> Result<Fit, MarginError> {
-        let margin = super::build(&spec)?;
+        let margin = super::build(&spec, Seed(0))?;
         let length = margin.length_mm();
         let fitted = dense(&margin);
         let there = deviation::to_polygon(&fitted, self.real.outline());

@@ -238,8 +238,7 @@ impl<S> Field<S> {
         self.places = order.iter().map(|&slot| self.places[slot as usize]).collect();
         self.bound2 = order.iter().map(|&slot| self.bound2[slot as usize]).collect();
         let mut before: Vec<Option<Source<S>>> = self.sources.drain(..).map(Some).collect();
-        self.sources =
-            order.iter().filter_map(|&slot| before[slot as usize].take()).collect();
+        self.sources = order.iter().filter_map(|&slot| before[slot as usize].take()).collect();
         for (slot, source) in self.sources.iter().enumerate() {
             self.slots[source.id as usize] = slot as u32;
         }
@@ -310,7 +309,8 @@ impl Cells {
     fn new(bounds: Rect, width: f64) -> Self {
         let size = bounds.size();
         let per_width = 1.0 / width;
-        let (columns, rows) = ((size.x * per_width) as usize + 1, (size.y * per_width) as usize + 1);
+        let (columns, rows) =
+            ((size.x * per_width) as usize + 1, (size.y * per_width) as usize + 1);
         Self {
             min: bounds.min,
             width,

@@ -13,6 +13,7 @@ use venation::pipeline::{self, Grown};
 use venation::seed::Seed;
 use venation::spec::{LeafSpec, Output};
 use venation::texture::atlas::{AtlasSheet, PixelRect, covered};
+use venation::texture::map::Outside;
 
 use super::generate::{pool, write_failure};
 use super::leaf_args::{self, LeafArgs};
@@ -87,7 +88,10 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let first = leaf_args::resolve(&document, seeds[0])?;
     let size = first.texture.size_px as usize;
     let padding = args.padding.unwrap_or(size / 256);
-    let output = first.output.resolve().map_err(venation::error::Error::from)?;
+    let mut output = first.output.resolve().map_err(venation::error::Error::from)?;
+    // What is for people is no map of the sheet.
+    output.maps.retain(|map| map.outside() != Outside::Paper);
+    output.formats.clear();
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_atlas", first.name)));
     let names = atlas_file_names(&first.name, size, &seeds, &output);
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
@@ -175,24 +179,24 @@ impl LayOut {
     }
 }
 
+/// From one scale tried to the next, and how many: down to a fiftieth of the largest.
+const SCALE_STEP: f64 = 0.99;
+const SCALES_TRIED: i32 = 400;
+
 /// The most texels to the millimetre with which all leaves still fit.
 fn lay_out(ready: &[Ready], size: usize, padding: usize) -> Result<LayOut, Failure> {
     let try_at = |per_mm: f64| {
         let places = packing::into_square(&LayOut::boxes(ready, per_mm), size, padding)?;
         Some(LayOut { per_mm, places })
     };
-    // No leaf may be larger than the sheet, nor painted larger than pictures can be.
+    // No leaf may be larger than the sheet, nor painted larger than pictures can be, nor all together
+    // larger than the sheet.
     let longest = ready.iter().flat_map(|leaf| leaf.box_mm).fold(0.0, f64::max);
     let widest = ready.iter().map(|leaf| leaf.side_mm).fold(0.0, f64::max);
-    let (mut low, mut high) = (0.0, (size as f64 / longest).min(16_384.0 / widest));
-    let mut best = None;
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        match try_at(middle) {
-            Some(found) => (low, best) = (middle, Some(found)),
-            None => high = middle,
-        }
-    }
+    let area: f64 = ready.iter().map(|leaf| leaf.box_mm[0] * leaf.box_mm[1]).sum();
+    let most = (size as f64 / longest).min(16_384.0 / widest).min(size as f64 / area.sqrt());
+    // From above, since a scale may fit where a smaller one does not.
+    let best = (0..SCALES_TRIED).find_map(|i| try_at(most * SCALE_STEP.powi(i)));
     // A leaf's own picture has 16 texels at least.
     let smallest = ready.iter().map(|leaf| leaf.side_mm).fold(f64::INFINITY, f64::min);
     best.filter(|found| found.per_mm * smallest >= 17.0).ok_or_else(|| {

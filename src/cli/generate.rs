@@ -24,6 +24,7 @@ use job::Job;
 Examples:
   venation generate beech
   venation generate beech --seed 7 --size 2048 -o out
+  venation generate maple --season 0.55 --damage holes=0.1,spots=0.3 --maps preview -o autumn
   venation generate willow --seeds 1-3,5,7-20:2 -o willows        13 leaves, willows/salix-alba_s0001 …
   venation generate beech --outline scan.jpg --length-mm 72       a scanned leaf's outline
   venation generate beech --outline drawing.png --root 310,540    a drawing, petiole given in pixels

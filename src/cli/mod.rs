@@ -6,10 +6,12 @@
 mod atlas;
 mod bench;
 mod compare;
+mod fit;
 mod generate;
 mod inspect;
 mod leaf_args;
 mod merge;
+mod morph;
 mod output_args;
 mod presets;
 mod progress;
@@ -125,6 +127,7 @@ Examples:
   venation generate linden --seeds 1-50 -o lindens      fifty different leaves
   venation atlas oak --seeds 1-16 --size 4096 -o oaks   one set of maps for engines
   venation compare beech -o growth.png                  growth types side by side
+  venation fit scan.jpg -o leaf.toml                    a real leaf as parameters that vary
   venation inspect out                                  its veins measured beside real leaves
   venation bench --auxins 1000,2000,4000,8000           time against the number of sources
   venation presets show beech > my.toml                 every setting, to edit and generate from
@@ -150,6 +153,10 @@ enum Command {
     Atlas(Box<atlas::Args>),
     /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
+    /// Find the parameters of real leaves.
+    Fit(Box<fit::Args>),
+    /// One leaf turning into another: frames, a strip and an animation.
+    Morph(Box<morph::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
@@ -186,6 +193,8 @@ pub(crate) fn run() -> Result<(), Failure> {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Atlas(args) => atlas::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
+        Command::Fit(args) => fit::run(args, &mut context),
+        Command::Morph(args) => morph::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),

@@ -7,8 +7,8 @@ use super::Failure;
 #[derive(Debug, clap::Args)]
 pub(crate) struct OutputArgs {
     /// Maps to write: basecolor, opacity, normal, normaldx, height, roughness, gloss, ambientocclusion
-    /// (ao), orm, maskmap, translucency, thickness, veinmask, veinorder, bump; default (the profile's),
-    /// all or none [default: the file's, else default].
+    /// (ao), orm, maskmap, translucency, thickness, veinmask, veinorder, bump; for people preview (lit) and
+    /// enhancement; default (the profile's), all or none [default: the file's, else default].
     #[arg(long, value_name = "LIST")]
     maps: Option<String>,
     /// Names and packing of the maps: default, unreal, unity-hdrp, polyhaven, ambientcg or speedtree

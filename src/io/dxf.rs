@@ -33,9 +33,15 @@ mod handle {
     pub(super) const FREE: u32 = 0x100;
 }
 
-/// The drawing of a leaf. Veins narrower than `least_width_mm` are left out.
+/// The drawing of a leaf; `rings` outline what is left of a damaged blade. Veins narrower than
+/// `least_width_mm` are left out.
 #[must_use]
-pub fn dxf(margin: &Margin, venation: &Venation, least_width_mm: f64) -> String {
+pub fn dxf(
+    margin: &Margin,
+    venation: &Venation,
+    rings: &[Vec<DVec2>],
+    least_width_mm: f64,
+) -> String {
     let pieces = pieces(venation, Cut { by_width: false, least_width_mm });
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     let layers: Vec<String> =
@@ -45,7 +51,11 @@ pub fn dxf(margin: &Margin, venation: &Venation, least_width_mm: f64) -> String 
 
     // What is drawn comes first, for the header names the next free handle.
     let mut entities = Dxf { text: String::new(), next: handle::FREE };
-    entities.polyline("CUT", margin.outline(), true);
+    // Of a damaged blade what is left, gaps as rings of their own.
+    let whole = [margin.outline().to_vec()];
+    for ring in if rings.is_empty() { &whole[..] } else { rings } {
+        entities.polyline("CUT", ring, true);
+    }
     for cut in margin.cuts() {
         entities.polyline("CUT", cut, false);
     }

@@ -13,17 +13,17 @@ use crate::raster::Grid;
 use crate::texture::map::{Channels, MapKind};
 use png::{BitDepth, ColorType, DeflateCompression, Filter};
 
-/// A square map of `bits` (8 or 16) as a PNG; `samples` as [`crate::texture::SideMaps::samples_of`] lays
+/// A map of `bits` (8 or 16) as a PNG; `samples` as [`crate::texture::SideMaps::samples_of`] lays
 /// them.
 #[must_use]
 pub fn map_png(
     map: MapKind,
     bits: u8,
-    size: usize,
+    size: (usize, usize),
     samples: &[u8],
     caption: &Caption<'_>,
 ) -> Vec<u8> {
-    encode((size, size), samples, &layout(map, bits), caption)
+    encode(size, samples, &layout(map, bits), caption)
 }
 
 /// How a map is packed.
@@ -34,7 +34,9 @@ fn layout(map: MapKind, bits: u8) -> Layout {
         | MapKind::Orm
         | MapKind::MaskMap
         | MapKind::Normal
-        | MapKind::NormalDx => COLOUR,
+        | MapKind::NormalDx
+        | MapKind::Preview
+        | MapKind::Enhancement => COLOUR,
         MapKind::Height => HEIGHT,
         _ => OPACITY,
     };
@@ -65,6 +67,38 @@ pub struct Caption<'a> {
 pub fn colour_png(picture: &Grid<[u8; 4]>, caption: &Caption<'_>) -> Vec<u8> {
     let size = (picture.width(), picture.height());
     encode(size, picture.values().as_flattened(), &COLOUR, caption)
+}
+
+/// An animated PNG of pictures of one size, each shown for a `per_second`th of a second, for ever.
+/// Browsers and Blender play it; others show the first picture.
+#[must_use]
+pub fn film(pictures: &[Grid<[u8; 4]>], per_second: u16) -> Vec<u8> {
+    let mut file = Vec::new();
+    write_film(&mut file, pictures, per_second).expect("pictures are written to memory");
+    file
+}
+
+fn write_film(
+    file: &mut Vec<u8>,
+    pictures: &[Grid<[u8; 4]>],
+    per_second: u16,
+) -> Result<(), png::EncodingError> {
+    let count = |n: usize| u32::try_from(n).expect("fewer pictures than 32 bits count");
+    let Some(first) = pictures.first() else { return Ok(()) };
+    let mut encoder = png::Encoder::new(file, count(first.width()), count(first.height()));
+    encoder.set_color(COLOUR.colour);
+    encoder.set_depth(COLOUR.depth);
+    encoder.set_deflate_compression(COLOUR.compression);
+    encoder.set_filter(COLOUR.filter);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_animated(count(pictures.len()), 0)?;
+    encoder.set_frame_delay(1, per_second)?;
+    encoder.add_text_chunk("Software".into(), super::GENERATOR.into())?;
+    let mut writer = encoder.write_header()?;
+    for picture in pictures {
+        writer.write_image_data(picture.values().as_flattened())?;
+    }
+    writer.finish()
 }
 
 /// How samples lie in a file, what they are, and how they are packed.

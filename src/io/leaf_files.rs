@@ -183,10 +183,12 @@ impl Work<'_> {
                     style: leaf.output.svg_style,
                     least_width_mm: leaf.output.least_width_mm,
                 };
-                svg::svg(&drawing, leaf.margin, leaf.venation, card.frame).into()
+                let rings = &leaf.textures.rings;
+                svg::svg(&drawing, leaf.margin, Some(leaf.venation), card.frame, rings).into()
             }
             Content::CutLines => {
-                dxf::dxf(leaf.margin, leaf.venation, leaf.output.least_width_mm).into()
+                let rings = &leaf.textures.rings;
+                dxf::dxf(leaf.margin, leaf.venation, rings, leaf.output.least_width_mm).into()
             }
             Content::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
             Content::GraphMl => graphml::graphml(leaf.venation).into(),
@@ -247,6 +249,7 @@ impl LeafFiles<'_> {
             seed: self.seed.0,
             settings_sha256: settings_sha256(self.spec_toml),
             profile: self.output.profile.word().to_owned(),
+            albedo: self.textures.albedo.word().to_owned(),
             size_px: self.textures.front.base_colour.width(),
             length_mm: graph::rounded(self.margin.length_mm()),
             area_mm2: graph::rounded(self.margin.area_mm2()),

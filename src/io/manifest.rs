@@ -29,6 +29,9 @@ pub struct Manifest {
     /// Whose names and packing the maps follow.
     #[serde(default)]
     pub profile: String,
+    /// What the base colour holds: `total` reflectance, or `diffuse`, less the mirror part of the
+    /// surface.
+    pub albedo: String,
     /// Side of the maps (pixels).
     pub size_px: usize,
     /// Blade from base to apex (mm).

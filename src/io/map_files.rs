@@ -9,7 +9,7 @@ use super::file_stem;
 use super::image::{Caption, map_png};
 use super::manifest::FileRecord;
 use crate::spec::{Output, Profile};
-use crate::texture::map::MapKind;
+use crate::texture::map::{MapKind, Outside};
 use crate::texture::{SideMaps, TextureSet, mip};
 
 /// One picture.
@@ -27,6 +27,10 @@ pub(super) fn list(name: &str, size: usize, output: &Output) -> Vec<(String, Map
     let mut files = Vec::new();
     for side in Side::ALL {
         for &map in MapKind::ALL.iter().filter(|map| output.maps.contains(map)) {
+            if side == Side::Back && !map.has_back() {
+                continue;
+            }
+            let levels = if map.outside() == Outside::Paper { 0 } else { levels };
             for level in 0..=levels {
                 files.push((
                     path(name, output.profile, side, map, level),
@@ -165,24 +169,24 @@ impl<'a> Pictures<'a> {
         let caption = Caption { pixels_per_mm: Some(pixels_per_mm), texts: &texts };
         let per_texel = self.textures.height_range_mm / 65535.0 * pixels_per_mm;
         let samples = maps.samples_of(map, self.bits, per_texel as f32);
-        map_png(map, map.bits_of(self.bits), maps.size(), &samples, &caption)
+        map_png(map, map.bits_of(self.bits), maps.dimensions(map), &samples, &caption)
     }
 
     /// A picture as a card carries it inside: 8 bits, nothing said.
     pub(super) fn plain(&self, side: Side, map: MapKind) -> Vec<u8> {
         let maps = self.maps(MapFile { side, map, level: 0 });
-        map_png(map, map.bits(), maps.size(), &maps.samples(map), &Caption::default())
+        map_png(map, map.bits(), maps.dimensions(map), &maps.samples(map), &Caption::default())
     }
 
     /// Fills what a manifest says of a picture.
     pub(super) fn describe(&self, file: MapFile, record: &mut FileRecord) {
-        let size = self.maps(file).size();
+        let (width, height) = self.maps(file).dimensions(file.map);
         record.map = Some(file.map.word().to_owned());
         record.side = Some(file.side.word().to_owned());
         record.level = (file.level > 0).then_some(file.level);
         record.channels = Some(file.map.channels().word().to_owned());
         record.bits = Some(file.map.bits_of(self.bits));
         record.colour_space = Some(file.map.colour_space().to_owned());
-        (record.width, record.height) = (Some(size), Some(size));
+        (record.width, record.height) = (Some(width), Some(height));
     }
 }

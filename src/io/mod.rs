@@ -4,11 +4,13 @@
 //! [`write::write_files`] puts named bytes into a folder. [`file_names`] tells beforehand what a run
 //! will write.
 
+pub mod animation;
 pub mod atlas;
 pub mod batch;
 pub mod card;
 mod drawing;
 pub mod dxf;
+pub mod fit;
 pub mod glb;
 pub mod graph;
 pub mod graphml;

@@ -41,13 +41,14 @@ pub struct Drawing<'a> {
     pub least_width_mm: f64,
 }
 
-/// The drawing of a leaf.
+/// The drawing of a leaf, or of its outline alone; `rings` outline what is left of a damaged blade.
 #[must_use]
 pub fn svg(
     drawing: &Drawing<'_>,
     margin: &Margin,
-    venation: &Venation,
+    venation: Option<&Venation>,
     frame: &TextureFrame,
+    rings: &[Vec<DVec2>],
 ) -> String {
     let page = Page { frame };
     let side = number(frame.side_mm);
@@ -66,13 +67,18 @@ pub fn svg(
     };
     let by_width = drawing.style == SvgStyle::Print;
     open_layer(&mut svg, 1, "outline", cut, Some(outline_mm));
-    let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(margin.outline()));
+    // Of a damaged blade what is left, gaps as rings of their own.
+    let whole = [margin.outline().to_vec()];
+    for ring in if rings.is_empty() { &whole[..] } else { rings } {
+        let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(ring));
+    }
     for cut in margin.cuts() {
         let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
     }
     svg.push_str("</g>\n");
 
-    let pieces = pieces(venation, Cut { by_width, least_width_mm: drawing.least_width_mm });
+    let cut = Cut { by_width, least_width_mm: drawing.least_width_mm };
+    let pieces = venation.map(|venation| pieces(venation, cut)).unwrap_or_default();
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     for order in 1..=orders {
         let width = (!by_width).then_some(outline_mm);

@@ -122,7 +122,8 @@ parameters! {
     pub struct OutputSpec {
         /// Maps to write of each side: some of basecolor, opacity, normal, normaldx, height,
         /// roughness, gloss, ambientocclusion, orm, maskmap, translucency, thickness, veinmask,
-        /// veinorder, bump; or default (the profile's), or all, or none.
+        /// veinorder, bump, for people preview and enhancement; or default (the profile's), or all, or
+        /// none.
         maps: text("default"),
         /// Other files to write: some of obj, glb, usda, svg, dxf, json, graphml, csv; or all, or none.
         formats: text("obj"),

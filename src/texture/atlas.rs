@@ -7,6 +7,7 @@
 use glam::DVec2;
 
 use super::map::MapSet;
+use super::pigment::Albedo;
 use super::side::SideMaps;
 use super::{TextureSet, dilation};
 use crate::raster::Grid;
@@ -30,6 +31,7 @@ pub struct PixelRect {
 pub struct AtlasSheet {
     front: SideMaps,
     back: SideMaps,
+    albedo: Albedo,
     leaves: Vec<Laid>,
 }
 
@@ -67,7 +69,7 @@ impl AtlasSheet {
     #[must_use]
     pub fn new(size: usize, maps: MapSet) -> Self {
         let (front, back) = (SideMaps::empty(size, maps), SideMaps::empty(size, maps));
-        Self { front, back, leaves: Vec::new() }
+        Self { front, back, albedo: Albedo::Total, leaves: Vec::new() }
     }
 
     /// Lays the part `from` of a leaf's pictures down with its upper left corner at `to`.
@@ -76,6 +78,7 @@ impl AtlasSheet {
     ///
     /// If it does not fit on the sheet.
     pub fn lay(&mut self, leaf: &TextureSet, from: PixelRect, to: (usize, usize)) {
+        self.albedo = leaf.albedo;
         let size = self.front.size();
         let rect = PixelRect { x: to.0, y: to.1, ..from };
         assert!(rect.x + rect.width <= size && rect.y + rect.height <= size, "it fits");
@@ -115,6 +118,8 @@ impl AtlasSheet {
             height_range_mm,
             thickness_range_mm,
             petiole_end: DVec2::ZERO,
+            albedo: self.albedo,
+            rings: Vec::new(),
         }
     }
 }

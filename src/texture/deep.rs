@@ -11,12 +11,12 @@ use super::normals;
 use super::side::SideMaps;
 
 impl MapKind {
-    /// Bits of a channel when `asked` (8 or 16) are wanted: heights and thickness always have 16, orders
-    /// and Foster's bump 8.
+    /// Bits of a channel when `asked` (8 or 16) are wanted: heights and thickness always have 16, orders,
+    /// Foster's bump and what is for people 8.
     #[must_use]
     pub const fn bits_of(self, asked: u8) -> u8 {
         match self {
-            Self::VeinOrder | Self::Bump => 8,
+            Self::VeinOrder | Self::Bump | Self::Preview | Self::Enhancement => 8,
             _ if asked == 16 => 16,
             other => other.bits(),
         }

@@ -111,6 +111,9 @@ impl Level {
                 vein_mask: plain.of(&maps.vein_mask, byte),
                 vein_order: plain.of(&maps.vein_order, commonest),
                 bump: covered.of(&maps.bump, byte),
+                // For people, and no smaller for being far away.
+                preview: Grid::from_values(0, 0, Vec::new()),
+                enhancement: Grid::from_values(0, 0, Vec::new()),
             },
             alpha,
         }

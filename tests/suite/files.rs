@@ -125,8 +125,8 @@ fn textures(margin: &Margin) -> TextureSet {
         vein_mask: grid(|i| pixel(i, salt + 10)),
         vein_order: grid(|i| (i % 6) as u8),
         bump: grid(|i| pixel(i, salt + 5)),
-        preview: Grid::filled(0, 0, [0; 3]),
-        enhancement: Grid::filled(0, 0, [0; 3]),
+        preview: grid(|i| [pixel(i, salt), 9, 9]),
+        enhancement: grid(|i| [9, pixel(i, salt), 9]),
     };
     let (front, back) = (side(1), side(2));
     TextureSet {

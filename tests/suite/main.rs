@@ -8,6 +8,7 @@ mod guides; // veins laid by architecture, in every preset
 mod imports; // outlines from files, odd and broken ones too
 mod inspect; // measures of leaves, and graphs for other programs
 mod layers; // who may use whom
+mod material; // light, seasons, films and wounds
 mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth

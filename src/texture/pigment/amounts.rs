@@ -60,7 +60,7 @@ parameters! {
         /// Bloom of the upper side.
         front_bloom: number(0.0, 0.0..=1.0, ""),
         /// Anthocyanin of a leaf that has just unfolded.
-        flush_anthocyanin_ug_cm2: number(3.0, 0.0..=60.0, "µg/cm²"),
+        flush_anthocyanin_ug_cm2: number(0.4, 0.0..=60.0, "µg/cm²"),
         /// How it turns in autumn.
         autumn: group(SenescenceSpec, SenescenceSpec::default()),
     }
@@ -96,7 +96,7 @@ impl Amounts {
 type Mix = [f32; 5];
 
 /// Dead tissue, and tissue of which only the skins are left.
-const DEAD: Mix = [0.3, 2.0, 0.8, 1.9, 2.1];
+const DEAD: Mix = [0.4, 3.0, 0.1, 1.6, 2.1];
 const MINED: Mix = [1.8, 2.2, 0.3, 0.12, 2.2];
 
 /// A bloom is this white (sRGB).
@@ -163,7 +163,7 @@ impl Mixer {
             back_bloom: pigments.back_bloom as f32,
             back_brown: pigments.back_brown as f32,
             front_bloom: pigments.front_bloom as f32,
-            young: [1.0 - 0.55 * youth, 1.0 - 0.4 * youth],
+            young: [1.0 - 0.42 * youth, 1.0 - 0.5 * youth],
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
             petiole: petiole.towards(dead, dry),

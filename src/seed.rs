@@ -18,8 +18,12 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// What is irregular about the margin: teeth, waves, roughness.
+    Margin,
     /// How the guided veins vary.
     Guides,
+    /// How the fine veins bow.
+    Bows,
     /// Where the particles start.
     Particles,
     /// Where the speckles lie.
@@ -40,7 +44,9 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Margin => "stage/margin",
             Self::Guides => "stage/guides",
+            Self::Bows => "stage/bows",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",

@@ -147,7 +147,7 @@ impl Content {
             Self::Materials => card.mtl().into(),
             Self::Drawing => {
                 let rings = &leaf.textures.rings;
-                svg::svg(leaf.shown_name(), leaf.margin, leaf.venation, frame, rings).into()
+                svg::svg(leaf.shown_name(), leaf.margin, Some(leaf.venation), frame, rings).into()
             }
             Self::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
             Self::GraphMl => graphml::graphml(leaf.venation).into(),

@@ -23,12 +23,12 @@ const WIDTH_STEP: f64 = 0.1;
 /// Width of the outline (mm): a hairline that still shows on screen.
 const OUTLINE_WIDTH_MM: f64 = 0.1;
 
-/// The drawing of a leaf; `rings` outline what is left of a damaged blade.
+/// The drawing of a leaf, or of its outline alone; `rings` outline what is left of a damaged blade.
 #[must_use]
 pub fn svg(
     title: &str,
     margin: &Margin,
-    venation: &Venation,
+    venation: Option<&Venation>,
     frame: &TextureFrame,
     rings: &[Vec<DVec2>],
 ) -> String {
@@ -53,7 +53,7 @@ pub fn svg(
     }
     svg.push_str("</g>\n");
 
-    let pieces = pieces(venation);
+    let pieces = venation.map(pieces).unwrap_or_default();
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     for order in 1..=orders {
         open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");

@@ -105,6 +105,13 @@ fn waypoints(side: &SideSpec, name: &str) -> Result<Vec<Waypoint>, MarginError> 
     Ok(list)
 }
 
+impl MarginSpec {
+    /// The two sides of a unilobed leaf, right and left, as they are drawn.
+    pub(super) fn sides(&self) -> [SideSpec; 2] {
+        [self.right.clone(), self.right.mixed(&self.left, self.asymmetry)]
+    }
+}
+
 /// The margin of a unilobed leaf.
 ///
 /// # Errors

@@ -389,8 +389,9 @@ fn the_manifest_tells_the_truth() {
         assert_eq!(record.sha256, hash);
         assert!(!record.meaning.is_empty());
         if name.ends_with(".png") {
-            let colour =
-                ["BaseColor.png", "Translucency.png"].iter().any(|end| name.ends_with(end));
+            let colour = ["BaseColor.png", "Translucency.png", "Preview.png", "Enhancement.png"]
+                .iter()
+                .any(|end| name.ends_with(end));
             assert_eq!(
                 record.colour_space.as_deref(),
                 Some(if colour { "sRGB" } else { "linear" })

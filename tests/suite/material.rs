@@ -31,12 +31,15 @@ fn mean(set: &TextureSet) -> [f64; 3] {
 
 #[test]
 fn no_texel_sends_back_and_lets_through_more_light_than_falls_on_it() {
-    for (season, health, maturity) in [(0.0, 1.0, 1.0), (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (0.2, 0.2, 0.1)] {
+    for (season, health, maturity) in
+        [(0.0, 1.0, 1.0), (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (0.2, 0.2, 0.1)]
+    {
         let mut settings = Settings::of_size(128);
         settings.state.season = season;
         settings.state.health = health;
         settings.state.maturity = maturity;
-        settings.damage = DamageSpec { mines: 0.6, spots: 0.5, scorch: 0.3, ..DamageSpec::default() };
+        settings.damage =
+            DamageSpec { mines: 0.6, spots: 0.5, scorch: 0.3, ..DamageSpec::default() };
         settings.colour.pigments.back_bloom = 0.5;
         let set = painted(&settings);
         for side in [&set.front, &set.back] {
@@ -84,9 +87,8 @@ fn the_season_moves_colours_from_green_to_brown_and_nothing_else() {
     let [r, g, b] = mean(&at(1.0));
     assert!(r > g && g > b && r < 170.0, "litter is brown: {r} {g} {b}");
     // A dry leaf is rougher.
-    let rough = |set: &TextureSet| {
-        set.front.roughness.values().iter().map(|&v| u64::from(v)).sum::<u64>()
-    };
+    let rough =
+        |set: &TextureSet| set.front.roughness.values().iter().map(|&v| u64::from(v)).sum::<u64>();
     assert!(rough(&at(1.0)) > rough(&summer));
 }
 

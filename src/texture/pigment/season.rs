@@ -172,7 +172,9 @@ impl Turned {
             // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
             chlorophyll: 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0)),
             carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.45 * end),
-            anthocyanin: spec.anthocyanin_ug_cm2 as f32 * smooth(0.08, 0.62, s) * (1.0 - 0.88 * end),
+            anthocyanin: spec.anthocyanin_ug_cm2 as f32
+                * smooth(0.08, 0.62, s)
+                * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
             structure: 0.25 * smooth(0.15, 0.6, s) + 0.3 * end,
         }

@@ -40,7 +40,7 @@ impl Blade<'_> {
         for _ in 0..count {
             let start = self.dart();
             let centre = self.at(start);
-            let radius = 0.012 * self.breadth * self.uniform(0.3, 1.0).powi(2) * 1.6 + 0.12;
+            let radius = 0.012 * self.breadth * self.uniform(0.3, 1.0).powi(2) * 1.9 + 0.25;
             let salt = self.rng.bits() as u32;
             for node in self.lattice.nodes_near(centre, centre, f64::from(3.0 * radius)) {
                 let to = (self.at(node) - centre).as_vec2();
@@ -83,7 +83,7 @@ impl Blade<'_> {
                     break;
                 }
                 // It winds, and turns from larger veins and from the margin.
-                bend = 0.8 * bend + self.uniform(-0.30, 0.30);
+                bend = 0.8 * bend + self.uniform(-0.16, 0.16);
                 let near = (2.2 * half / place.major.max(0.3)).min(1.0);
                 let rim = (2.0 * half / place.edge.max(0.3)).min(1.0);
                 let away = self.downhill(node) * f64::from(0.9 * near * near);

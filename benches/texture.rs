@@ -15,7 +15,7 @@ use venation::texture::map::{MapKind, MapSet};
 use venation::texture::petiole::PetioleSpec;
 use venation::texture::pigment::{ColourSpec, StateSpec};
 use venation::texture::relief::ReliefSpec;
-use venation::texture::{Paint, TextureSet, TextureSpec, paint};
+use venation::texture::{Paint, SideMaps, TextureSet, TextureSpec, paint};
 use venation::veins::Venation;
 
 fn main() {
@@ -56,8 +56,10 @@ fn encode_both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
     let set = painted(size_px);
     bencher.bench(|| {
         let sides = [&set.front, &set.back].into_iter();
-        sides
-            .flat_map(|side| MAPS.map(|map| map_png(map, side, &Caption::default()).len()))
-            .sum::<usize>()
+        let packed = |side: &SideMaps, map: MapKind| {
+            let (size, samples) = (side.dimensions(map), side.samples(map));
+            map_png(map, map.bits(), size, &samples, &Caption::default()).len()
+        };
+        sides.flat_map(|side| MAPS.map(|map| packed(side, map))).sum::<usize>()
     });
 }

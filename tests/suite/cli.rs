@@ -287,7 +287,7 @@ fn compare_writes_a_sheet_and_a_table() {
     let table = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
     let growths: Vec<&str> =
         table.lines().skip(1).filter_map(|line| line.split(',').next()).collect();
-    assert_eq!(growths, ["none", "marginal", "isotropic", "anisotropic"]);
+    assert_eq!(growths, ["none", "marginal", "isotropic", "anisotropic", "non-uniform"]);
     let sheet = std::fs::read(folder.path().join("sheet.png")).unwrap();
     assert_eq!(&sheet[1..4], b"PNG");
     fail(folder.path(), 3, &arguments);

@@ -83,7 +83,7 @@ parameters! {
         /// Closed venation: kill distance in the last steps, relative to that before (no less than half
         /// a step). Small, and the veinlets reach the middle of what they feed.
         veinlet_kill: number(0.7, 0.01..=2.0, ""),
-        /// How straight veins come: 0 as their sources pull them, at 1 tips keep most of their heading.
+        /// How straight veins come: 0 as all their sources pull them, above it tips follow those ahead.
         straightness: number(0.0, 0.0..=1.0, ""),
         /// How strongly veins are drawn to the apex: a vein that would leave at a right angle leaves at
         /// atan(1/pull), 45° for 1.

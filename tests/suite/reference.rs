@@ -205,25 +205,26 @@ impl World<'_> {
     }
 
     /// Where a vein goes that its callers pull along a unit vector.
-    fn steered(&self, node: usize, towards: DVec2) -> DVec2 {
+    fn steered(&self, node: usize, towards: DVec2, units: &[DVec2]) -> DVec2 {
         let share = self.share_of_steering();
+        let power = 12.0 * (self.spec.straightness * share);
         let mut way = towards;
-        let pulled = towards + DVec2::Y * (self.spec.pull * share);
-        if self.spec.pull * share > 0.0 && pulled.normalize_or_zero().dot(towards) > 0.5 {
-            way = pulled.normalize();
-        }
         let ends = self.edges().into_iter().filter(|&(a, b)| a == node || b == node).count();
-        match self.parents[node] {
-            Some(parent) if ends < 2 => {
-                let heading = self.way(self.positions[parent], self.positions[node]);
-                let heading = heading.normalize_or_zero();
-                if heading.dot(way) < 0.5 {
-                    return way;
-                }
-                way.lerp(heading, 0.85 * (self.spec.straightness * share)).normalize()
+        if let Some(parent) = self.parents[node]
+            && ends < 2
+            && units.len() > 1
+            && power > 0.0
+        {
+            // Those ahead count most.
+            let heading = self.way(self.positions[parent], self.positions[node]).normalize();
+            let mut sum = DVec2::ZERO;
+            for unit in units {
+                sum += *unit * libm::pow((0.5 + 0.5 * unit.dot(heading)).max(0.0), power);
             }
-            _ => way,
+            way = sum.normalize_or(towards);
         }
+        let pulled = (way + DVec2::Y * (self.spec.pull * share)).normalize_or_zero();
+        if pulled.dot(way) > 0.5 { pulled } else { way }
     }
 
     /// Makes a child, if there is room; `None` when the margin is in the way.
@@ -289,7 +290,7 @@ impl World<'_> {
         }
         let is_steered = self.spec.straightness > 0.0 || self.spec.pull > 0.0;
         if is_steered && self.share_of_steering() > 0.0 {
-            let towards = self.steered(node, pull / pull.length());
+            let towards = self.steered(node, pull / pull.length(), &units[first..]);
             if self.sprout(node, towards).is_some() {
                 return;
             }

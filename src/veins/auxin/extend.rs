@@ -208,7 +208,7 @@ impl Nodes {
         }
         let straight = pull / length;
         if !self.steering.is_off() {
-            let towards = self.steered(node, straight, metric);
+            let towards = self.steered(node, straight, left, calls, metric);
             if self.sprout(node, towards, blade, step, metric) != Sprout::Blocked {
                 return;
             }
@@ -222,13 +222,24 @@ impl Nodes {
         }
     }
 
-    /// Where a vein goes that its callers pull along a unit vector: only a tip has a heading.
-    fn steered(&self, node: NodeId, towards: DVec2, metric: Metric) -> DVec2 {
-        let heading = (self.graph.parent(node))
-            .filter(|_| self.web.is_tip(node))
-            .map(|parent| metric.between(self.position(parent), self.position(node)))
-            .map(DVec2::normalize_or_zero);
-        self.steering.steered(towards, heading)
+    /// Where a vein goes that the last `left` of its callers pull along a unit vector: only a tip has a
+    /// heading.
+    fn steered(
+        &self,
+        node: NodeId,
+        towards: DVec2,
+        left: usize,
+        calls: &dyn Callers,
+        metric: Metric,
+    ) -> DVec2 {
+        let parent = self.graph.parent(node).filter(|_| self.web.is_tip(node));
+        let mut way = towards;
+        if let Some(parent) = parent.filter(|_| left > 1 && self.steering.straightens()) {
+            let heading = metric.between(self.position(parent), self.position(node)).normalize();
+            let units = calls.units(node, self, metric);
+            way = self.steering.ahead(&units[units.len() - left..], heading).normalize_or(towards);
+        }
+        self.steering.pulled(way)
     }
 
     /// Decides what vein the roots belong to that have no rank.

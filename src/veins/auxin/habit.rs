@@ -3,8 +3,9 @@
 //! What E. Foster's *Procedural leaf generation* misses (section 6: straightness and symmetry, "perhaps
 //! by using constrained auxin placement") in five parts, each off by default:
 //!
-//! - *straightness*: the tip of a vein keeps part of its heading. Branches are free, and so is a tip that
-//!   would have to turn by more than [`WIDEST_TURN`].
+//! - *straightness*: the tip of a vein follows those of its callers that lie ahead; the others get
+//!   branches once it has passed. (Keeping a part of the heading instead, as flocking does, makes veins
+//!   less straight: they overshoot their sources and turn back.)
 //! - *pull*: every caller is seen a little towards the apex, so that a vein which leaves at a right
 //!   angle leaves at atan(1 / pull).
 //! - *symmetry*: darts fall in mirrored pairs; some pairs lose one, and one may be off by a little.
@@ -42,13 +43,12 @@ parameters! {
     }
 }
 
-/// A tip that would have to turn by more than this (its cosine) goes straight to its sources: a heading
-/// that is kept on a wide turn leads round and round them.
+/// Callers behind this (its cosine, seen from where the pull leads) are not turned away from.
 const WIDEST_TURN: f64 = 0.5;
 
-/// The share of its heading that the tip of the straightest vein keeps: with all of it, it would never
-/// come to a source.
-const KEPT: f64 = 0.85;
+/// How fast, at full straightness, callers count less the farther they lie off the heading: those at 60
+/// degrees by ¾ to this power.
+const SHARPNESS: f64 = 12.0;
 
 /// Where less dense than this, no dart falls, and distances need not be infinite.
 const LEAST_DENSITY: f64 = 1e-4;
@@ -75,21 +75,22 @@ impl Steering {
         self.straightness == 0.0 && self.pull == 0.0
     }
 
-    /// Where a vein goes whose callers pull along a unit vector; `heading` is where a tip comes from.
-    pub(super) fn steered(&self, towards: DVec2, heading: Option<DVec2>) -> DVec2 {
-        let mut way = towards;
-        if self.pull > 0.0 {
-            let pulled = (towards + DVec2::Y * self.pull).normalize_or_zero();
-            // Callers behind are not turned away from.
-            if pulled.dot(towards) > WIDEST_TURN {
-                way = pulled;
-            }
-        }
-        let Some(heading) = heading else { return way };
-        if heading.dot(way) < WIDEST_TURN {
-            return way;
-        }
-        way.lerp(heading, KEPT * self.straightness).normalize()
+    /// Whether callers count differently.
+    pub(super) fn straightens(&self) -> bool {
+        self.straightness > 0.0
+    }
+
+    /// The sum of the unit vectors towards the callers of a tip, those ahead counting most.
+    pub(super) fn ahead(&self, units: &[DVec2], heading: DVec2) -> DVec2 {
+        let power = SHARPNESS * self.straightness;
+        let weight = |unit: DVec2| libm::pow((0.5 + 0.5 * unit.dot(heading)).max(0.0), power);
+        units.iter().fold(DVec2::ZERO, |sum, unit| sum + *unit * weight(*unit))
+    }
+
+    /// A unit vector drawn to the apex.
+    pub(super) fn pulled(&self, towards: DVec2) -> DVec2 {
+        let pulled = (towards + DVec2::Y * self.pull).normalize_or_zero();
+        if pulled.dot(towards) > WIDEST_TURN { pulled } else { towards }
     }
 }
 
@@ -199,20 +200,21 @@ mod tests {
     fn a_vein_at_a_right_angle_leaves_at_the_angle_of_the_pull() {
         for pull in [0.3, 1.0, 1.7] {
             let steering = Steering { straightness: 0.0, pull };
-            let way = steering.steered(DVec2::X, None);
+            let way = steering.pulled(DVec2::X);
             assert!((way.y.atan2(way.x) - f64::atan(pull)).abs() < 1e-12);
-            assert_eq!(steering.steered(-DVec2::Y, None), -DVec2::Y, "not away from callers");
+            assert_eq!(steering.pulled(-DVec2::Y), -DVec2::Y, "not away from callers");
         }
     }
 
     #[test]
-    fn a_tip_keeps_its_heading_but_not_round_a_corner() {
-        let steering = Steering { straightness: 0.8, pull: 0.0 };
-        let ahead = DVec2::new(0.6, 0.8);
-        let way = steering.steered(ahead, Some(DVec2::Y));
-        assert!(way.y > 0.95 && way.x > 0.0 && (way.length() - 1.0).abs() < 1e-12);
-        assert_eq!(steering.steered(DVec2::X, Some(DVec2::Y)), DVec2::X);
-        assert_eq!(steering.steered(ahead, None), ahead);
+    fn a_tip_follows_the_callers_ahead() {
+        let steering = Steering { straightness: 1.0, pull: 0.0 };
+        let units = [DVec2::Y, DVec2::X, DVec2::new(-0.6, 0.8)];
+        let way = steering.ahead(&units, DVec2::Y).normalize();
+        assert!(way.y > 0.95, "{way}");
+        // Two at the same angle count the same.
+        let way = steering.ahead(&[DVec2::X, -DVec2::X], DVec2::Y);
+        assert_eq!(way, DVec2::ZERO);
     }
 
     #[test]

@@ -161,7 +161,8 @@ impl Job {
     }
 }
 
-fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+/// The threads to work on; all of the machine's unless told otherwise.
+pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
     /// Threads beyond any machine's take minutes to start and make nothing faster.
     const MOST: usize = 1024;
     if threads == Some(0) {

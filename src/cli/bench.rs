@@ -168,7 +168,14 @@ impl Args {
         let measure = measures.swap_remove(measures.len() / 2);
         let ns_per_source_step = measure.cpu_seconds * 1e9 / measure.source_steps.max(1) as f64;
         let (printed_seconds, floor_seconds) = (None, None);
-        Ok(Line { name, printed_seconds, floor_seconds, bytes_per_node, ns_per_source_step, measure })
+        Ok(Line {
+            name,
+            printed_seconds,
+            floor_seconds,
+            bytes_per_node,
+            ns_per_source_step,
+            measure,
+        })
     }
 }
 

@@ -4,8 +4,8 @@
 //! Segments are listed in every cell of a uniform grid that their box touches. Cells are about one
 //! mean segment wide, so a query near few segments looks at few.
 
-use super::rings::Size;
 use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
+use super::rings::Size;
 use super::{DVec2, Rect};
 
 /// An index over segments a–b.

@@ -17,12 +17,7 @@ pub(super) fn seconds(program: &Path, workload: &Workload, runs: u32) -> Result<
     measured.map_err(|problem| format!("{}: {problem}", program.display()))
 }
 
-fn measure(
-    program: &Path,
-    workload: &Workload,
-    runs: u32,
-    folder: &Path,
-) -> Result<f64, String> {
+fn measure(program: &Path, workload: &Workload, runs: u32, folder: &Path) -> Result<f64, String> {
     #[derive(Deserialize)]
     struct Line {
         cpu: f64,

@@ -34,8 +34,7 @@ fn columns(cells: [String; 9]) -> String {
 
 /// The heading.
 pub(super) fn head(out: &mut dyn Write) -> std::io::Result<()> {
-    let head =
-        ["", "auxins", "nodes", "joins", "steps", "CPU s", "wall s", "B/node", "ns/act"];
+    let head = ["", "auxins", "nodes", "joins", "steps", "CPU s", "wall s", "B/node", "ns/act"];
     writeln!(out, "{}  not reached", columns(head.map(String::from)))
 }
 

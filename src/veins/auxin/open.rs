@@ -10,12 +10,12 @@
 
 use glam::DVec2;
 
+use super::NONE;
 use super::callers::{self, Callers, Ranges, unit};
 use super::calls::Calls;
 use super::claims::{Claim, Sight};
 use super::extend::Nodes;
 use super::field::{DEAD, Field, Told};
-use super::NONE;
 use super::tiles::Tiles;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;

@@ -76,8 +76,12 @@ impl<'a, S> Part<'a, S> {
         let (bound2, later_bound2) = self.bound2.split_at_mut(at);
         let (sources, later_sources) = self.sources.split_at_mut(at);
         let before = Self { first: self.first, places, bound2, sources };
-        let after =
-            Self { first: slot, places: later_places, bound2: later_bound2, sources: later_sources };
+        let after = Self {
+            first: slot,
+            places: later_places,
+            bound2: later_bound2,
+            sources: later_sources,
+        };
         (before, after)
     }
 }
@@ -196,11 +200,7 @@ impl<S: Send + Sync> Field<S> {
     }
 
     /// Tells the sources on as many threads as found them.
-    fn tell_shared(
-        &mut self,
-        finds: &[Finds],
-        hear: impl Fn(Hit, DVec2, &mut S) -> Told + Sync,
-    ) {
+    fn tell_shared(&mut self, finds: &[Finds], hear: impl Fn(Hit, DVec2, &mut S) -> Told + Sync) {
         let mut sample: Vec<u32> = finds
             .iter()
             .flat_map(|finds| finds.hits().iter().step_by(SAMPLE).map(|hit| hit.slot))

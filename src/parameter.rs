@@ -4,6 +4,9 @@
 //! the plain struct that the stage works with (numbers already drawn) and the list of
 //! [`Parameter`]s from which documents are checked, help is printed and complete files are written.
 //! Ranges live in the document only ([`crate::document`]); a stage never sees one.
+//!
+//! A field of `records` is a list of groups (one a lobe, say). Its knobs are listed once, with
+//! [`RECORD`] where a document has the number of the record: `margin.lobe.N.angle_deg`.
 
 /// One knob.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,10 +52,16 @@ pub enum Kind {
     Lines,
 }
 
+/// What stands in a key for the number of a record, which counts from 1.
+pub const RECORD: &str = "N";
+
 /// Settings that can list their knobs.
 pub trait Parameters {
     /// Every knob, in the order in which files show them; keys relative to this group.
     fn parameters() -> Vec<Parameter>;
+
+    /// The default of every knob, as a tree by the parts of their keys.
+    fn defaults() -> toml::Table;
 }
 
 /// A word of a list, as a parameter.
@@ -70,6 +79,19 @@ pub fn prefixed<T: Parameters>(prefix: &str) -> Vec<Parameter> {
     list
 }
 
+/// Puts the records found in `inner` into the group `key` of `tree`.
+pub(crate) fn add_records(tree: &mut toml::Table, key: &str, inner: toml::Table) {
+    let Some(toml::Value::Table(group)) = tree.get_mut(key) else { return };
+    for (name, value) in inner {
+        let toml::Value::Table(table) = value else { continue };
+        if table.contains_key(RECORD) {
+            group.insert(name, table.into());
+        } else {
+            add_records(group, &name, table);
+        }
+    }
+}
+
 /// Declares a group of settings: a struct with serde and `Default`, and its [`Parameters`].
 ///
 /// ```ignore
@@ -81,6 +103,7 @@ pub fn prefixed<T: Parameters>(prefix: &str) -> Vec<Parameter> {
 ///         steps: count(600, 1..=100_000, "steps"),
 ///         r#type: choice(GrowthType, GrowthType::Isotropic),
 ///         front: group(SideColour, SideColour::default()),
+///         spot: records(SpotSpec),
 ///     }
 /// }
 /// ```
@@ -114,6 +137,16 @@ macro_rules! parameters {
                 } )*
                 list
             }
+
+            fn defaults() -> toml::Table {
+                let plain = toml::Value::try_from(Self::default()).expect("settings are plain data");
+                let toml::Value::Table(mut tree) = plain else { unreachable!("a struct is a table") };
+                $( {
+                    let key = stringify!($field).trim_start_matches("r#");
+                    $crate::parameter::field_defaults!(tree, key, $kind $arguments);
+                } )*
+                tree
+            }
         }
     };
 }
@@ -128,6 +161,7 @@ macro_rules! field_type {
     (points $x:tt) => { Vec<[f64; 2]> };
     (lines $x:tt) => { Vec<Vec<[f64; 2]>> };
     (group ($T:ty, $default:expr)) => { $T };
+    (records ($T:ty)) => { Vec<$T> };
 }
 
 /// The default of a field declared in [`parameters!`].
@@ -156,6 +190,27 @@ macro_rules! field_default {
     (group ($T:ty, $default:expr)) => {
         $default
     };
+    (records ($T:ty)) => {
+        Vec::new()
+    };
+}
+
+/// Adds to the tree of defaults what the plain default of a field in [`parameters!`] lacks: what
+/// stands in records, of which there are none yet.
+macro_rules! field_defaults {
+    ($tree:ident, $key:ident, group ($T:ty, $default:expr)) => {
+        // The group's own defaults may have been replaced where it is used; records stay its own.
+        let inner = <$T as $crate::parameter::Parameters>::defaults();
+        $crate::parameter::add_records(&mut $tree, $key, inner);
+    };
+    ($tree:ident, $key:ident, records ($T:ty)) => {
+        let record = <$T as $crate::parameter::Parameters>::defaults();
+        let named = toml::Table::from_iter([($crate::parameter::RECORD.to_owned(), record.into())]);
+        $tree.insert($key.to_owned(), named.into());
+    };
+    ($tree:ident, $key:ident, $kind:ident $arguments:tt) => {
+        let _ = (&mut $tree, $key);
+    };
 }
 
 /// The parameters of a field declared in [`parameters!`].
@@ -163,6 +218,11 @@ macro_rules! field_parameters {
     ($list:ident, $key:ident, $doc:ident, group ($T:ty, $default:expr)) => {
         let _ = $doc;
         $list.extend($crate::parameter::prefixed::<$T>($key));
+    };
+    ($list:ident, $key:ident, $doc:ident, records ($T:ty)) => {
+        let _ = $doc;
+        let prefix = format!("{}.{}", $key, $crate::parameter::RECORD);
+        $list.extend($crate::parameter::prefixed::<$T>(&prefix));
     };
     ($list:ident, $key:ident, $doc:ident, $kind:ident $arguments:tt) => {
         $list.push($crate::parameter::Parameter {
@@ -233,4 +293,6 @@ macro_rules! words {
     };
 }
 
-pub(crate) use {field_default, field_kind, field_parameters, field_type, parameters, words};
+pub(crate) use {
+    field_default, field_defaults, field_kind, field_parameters, field_type, parameters, words,
+};

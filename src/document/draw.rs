@@ -3,15 +3,31 @@
 use std::collections::BTreeMap;
 
 use super::value::{self, from_plain};
-use super::{Document, DocumentError, Entry, Value, parameters};
+use super::{Document, DocumentError, Entry, Value, parameters, records};
+use crate::margin::instances;
+use crate::parameter::Parameter;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
 
 pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, DocumentError> {
     let mut tree = toml::Table::new();
-    for parameter in parameters() {
-        let value = document.value(&parameter.key).expect("every parameter has a default");
-        insert(&mut tree, &parameter.key, drawn(&value, &parameter.key, seed));
+    let value_of =
+        |key: &str| drawn(&document.value(key).expect("every parameter has a default"), key, seed);
+    for parameter in parameters().iter().filter(|p| !records::is_record(&p.key)) {
+        insert(&mut tree, &parameter.key, value_of(&parameter.key));
+    }
+    for (list, keys) in records::lists() {
+        let count = document.record_count(list);
+        let mut items = Vec::with_capacity(count);
+        for number in 1..=count {
+            complete(document, list, number, count)?;
+            let mut record = toml::Table::new();
+            for (key, _) in &keys {
+                insert(&mut record, key, value_of(&format!("{list}.{number}.{key}")));
+            }
+            items.push(toml::Value::Table(record));
+        }
+        insert(&mut tree, list, toml::Value::Array(items));
     }
     let spec: Result<LeafSpec, toml::de::Error> = toml::Value::Table(tree).try_into();
     let mut spec = spec.map_err(|error| DocumentError {
@@ -20,7 +36,32 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     })?;
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
+    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0) {
+        spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
+    }
     Ok(spec)
+}
+
+/// Refuses a list in which a record is missing.
+fn complete(
+    document: &Document,
+    list: &str,
+    number: usize,
+    count: usize,
+) -> Result<(), DocumentError> {
+    let about =
+        |n: usize| move |(key, _): &(&String, &Entry)| records::number_in(key, list) == Some(n);
+    if document.entries.iter().any(|entry| about(number)(&entry)) {
+        return Ok(());
+    }
+    let last = document.entries.iter().find(about(count));
+    let (key, origin) = last.map_or((list, ""), |(key, entry)| (key.as_str(), &entry.origin));
+    Err(DocumentError {
+        origin: origin.to_owned(),
+        problem: format!(
+            "{key} is given, but {list}.{number} is not; they count from 1 without gaps"
+        ),
+    })
 }
 
 /// Drawn numbers are rounded to this many to the unit: a millionth of a millimetre or of a degree
@@ -70,13 +111,27 @@ fn insert(tree: &mut toml::Table, key: &str, value: toml::Value) {
 
 pub(super) fn document_of(spec: &LeafSpec, seed: u64) -> Document {
     let tree = toml::Value::try_from(spec).expect("a leaf is plain data");
-    let entries: BTreeMap<String, Entry> = parameters()
+    let entry = |value| Entry { value, origin: "leaf".into() };
+    let mut entries: BTreeMap<String, Entry> = parameters()
         .iter()
+        .filter(|p| !records::is_record(&p.key))
         .filter_map(|parameter| {
             let value =
                 from_plain(&tree, parameter).or_else(|| value::default_of(&parameter.key))?;
-            Some((parameter.key.clone(), Entry { value, origin: "leaf".into() }))
+            Some((parameter.key.clone(), entry(value)))
         })
         .collect();
-    Document { entries, seed: Some(seed) }
+    for (list, keys) in records::lists() {
+        let items = list.split('.').try_fold(&tree, |node, part| node.get(part));
+        let items = items.and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
+        for (i, item) in items.iter().enumerate() {
+            for (key, parameter) in &keys {
+                let plain = Parameter { key: (*key).to_owned(), ..(*parameter).clone() };
+                if let Some(value) = from_plain(item, &plain) {
+                    entries.insert(format!("{list}.{}.{key}", i + 1), entry(value));
+                }
+            }
+        }
+    }
+    Document { entries, seed: Some(seed), ..Document::default() }
 }

@@ -4,15 +4,20 @@
 //! declare ([`crate::parameter`]). Presets, files and `--set` lay documents over each other;
 //! [`Document::resolve`] draws one value for every range and gives the plain [`LeafSpec`] the stages
 //! work with. Each key draws from a stream of its own, so setting one leaves the others as they were.
+//!
+//! Lists of records are keys too, with the number of the record in them (`margin.lobe.2.angle_deg`):
+//! a `[[margin.lobe]]` in a file replaces the list that was there, one key changes one record.
 
 mod draw;
 mod parse;
+mod records;
 mod value;
 mod write;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use crate::margin::MarginSpec;
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
 pub use value::Value;
@@ -48,8 +53,13 @@ struct Entry {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     entries: BTreeMap<String, Entry>,
+    /// The lists of records that are given whole.
+    lists: BTreeSet<String>,
     /// The seed written in the file, which the command line may override.
     pub seed: Option<u64>,
+    /// By up to how many percent every number of the margin is perturbed, on top of the ranges
+    /// (`vary = 20`); see [`crate::margin::instances`].
+    pub vary: Option<f64>,
 }
 
 impl Document {
@@ -76,6 +86,10 @@ impl Document {
     ///
     /// As [`Document::parse`].
     pub fn set(&mut self, assignment: &str, origin: &str) -> Result<(), DocumentError> {
+        if let Some(percent) = parse::variation(assignment, origin)? {
+            self.vary = Some(percent);
+            return Ok(());
+        }
         let (key, value) = parse::assignment(assignment, origin)?;
         self.insert(&key, value, origin);
         Ok(())
@@ -87,7 +101,7 @@ impl Document {
     ///
     /// If no parameter has that key: the caller names it in its source.
     pub fn insert(&mut self, key: &str, value: Value, origin: &str) {
-        assert!(parameters().iter().any(|p| p.key == key), "{key} is not a parameter");
+        assert!(records::listed(key).is_some(), "{key} is not a parameter");
         self.entries.insert(key.to_owned(), Entry { value, origin: origin.to_owned() });
     }
 
@@ -99,8 +113,41 @@ impl Document {
 
     /// Lays another document over this one: what it gives replaces what this gave.
     pub fn overlay(&mut self, over: Self) {
+        for list in over.lists {
+            self.start_list(&list);
+        }
         self.entries.extend(over.entries);
         self.seed = over.seed.or(self.seed);
+        self.vary = over.vary.or(self.vary);
+    }
+
+    /// Gives the whole outline anew: forgets every `margin.` key that was given and sets all of them.
+    ///
+    /// # Panics
+    ///
+    /// If the lists of the specification run past what a document can hold; fitted ones never do.
+    pub fn set_margin(&mut self, margin: &MarginSpec, origin: &str) {
+        const GROUP: &str = "margin.";
+        self.entries.retain(|key, _| !key.starts_with(GROUP));
+        let spec = LeafSpec { margin: margin.clone(), ..LeafSpec::default() };
+        for (key, entry) in draw::document_of(&spec, 0).entries {
+            if key.starts_with(GROUP) {
+                self.entries.insert(key, Entry { value: entry.value, origin: origin.to_owned() });
+            }
+        }
+    }
+
+    /// Forgets the records of a list: those that follow are all of it.
+    fn start_list(&mut self, list: &str) {
+        self.entries.retain(|key, _| records::number_in(key, list).is_none());
+        self.lists.insert(list.to_owned());
+    }
+
+    /// How many records a list has: the highest number given. `list` as in `margin.lobe`.
+    #[must_use]
+    pub fn record_count(&self, list: &str) -> usize {
+        let numbers = self.entries.keys().filter_map(|key| records::number_in(key, list));
+        numbers.max().unwrap_or(0)
     }
 
     /// The value of a key: the one given, else the default.
@@ -112,7 +159,8 @@ impl Document {
         }
     }
 
-    /// One leaf: every range drawn with the seed's own stream for its key.
+    /// One leaf: every range drawn with the seed's own stream for its key, the margin perturbed by
+    /// [`vary`](Self::vary).
     ///
     /// # Errors
     ///
@@ -207,7 +255,7 @@ mod tests {
             "",
         )
         .unwrap();
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for seed in 0..200 {
             let spec = document.resolve(Seed(seed)).unwrap();
             assert!((60.0..=100.0).contains(&spec.margin.length_mm));
@@ -235,6 +283,51 @@ mod tests {
             Document::parse(&commented, "leaf.toml").unwrap().resolve(Seed(1)).unwrap(),
             spec
         );
+    }
+
+    #[test]
+    fn records_are_listed_in_files_and_changed_one_by_one() {
+        let text = "[margin]\nkind = \"lobed\"\n\n[[margin.lobe]]\nangle_deg = 90\nlower = { waist_x = 0.2 }\n\n[[margin.lobe]]\nside = \"apex\"\n";
+        let mut document = Document::parse(text, "leaf.toml").unwrap();
+        assert_eq!(document.record_count("margin.lobe"), 2);
+        document.set("margin.lobe.1.angle_deg=40..50", "--set").unwrap();
+        let angles: Vec<f64> =
+            (0..50).map(|s| document.resolve(Seed(s)).unwrap().margin.lobe[0].angle_deg).collect();
+        assert!(angles.iter().all(|a| (40.0..50.0).contains(a)) && angles[0] != angles[1]);
+        let spec = document.resolve(Seed(1)).unwrap();
+        assert_eq!(spec.margin.lobe[0].lower.waist_x, 0.2);
+        assert_eq!(spec.margin.lobe[1].side, crate::margin::lobes::LobeSide::Apex);
+        // Written and read again.
+        let text = Document::of_spec(&spec, 1).to_toml(Comments::Full);
+        assert_eq!(Document::parse(&text, "").unwrap().resolve(Seed(7)).unwrap(), spec);
+        // A list laid over another replaces it; a key changes one record.
+        let mut over = document.clone();
+        over.overlay(Document::parse("[[margin.lobe]]\n", "").unwrap());
+        assert_eq!(over.record_count("margin.lobe"), 1);
+        document.overlay(Document::parse("[margin.lobe.2]\nlength = 0.5\n", "").unwrap());
+        assert_eq!(document.record_count("margin.lobe"), 2);
+    }
+
+    #[test]
+    fn mistakes_in_records_name_line_key_and_limit() {
+        let message = problem("[[margin.lobe]]\n[[margin.lobe]]\nangle_deg = 270\n");
+        assert_eq!(message, "leaf.toml:3: margin.lobe.2.angle_deg = 270 is outside 0 to 180");
+        let message = problem("[[margin.lobe]]\nangel_deg = 70\n");
+        assert!(
+            message.contains("leaf.toml:2: unknown key `margin.lobe.1.angel_deg`"),
+            "{message}"
+        );
+        assert!(message.contains("did you mean `margin.lobe.1.angle_deg`"), "{message}");
+        assert!(problem("[margin]\nlobe = [1, 2]\n").contains("[[margin.lobe]]"));
+        assert!(problem("[[growth]]\nscale = 1\n").contains("unknown key `growth`"));
+        let mut document = Document::new();
+        for key in ["margin.lobe.N.length", "margin.lobe.0.length", "margin.lobe.01.length"] {
+            let error = document.set(&format!("{key}=0.5"), "--set").unwrap_err().to_string();
+            assert!(error.contains("unknown key"), "{error}");
+        }
+        document.set("margin.lobe.3.length=0.5", "--set").unwrap();
+        let error = document.resolve(Seed(1)).unwrap_err().to_string();
+        assert!(error.contains("margin.lobe.1 is not"), "{error}");
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! TOML and `key=value` into checked values, with the place of every mistake.
 
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
+use super::records::{self, find};
 use super::value::{LIKE_A_KEY, kind_in_words, nearest};
 use super::{Document, DocumentError, Entry, Value, parameters};
-use crate::parameter::{Kind, Parameter};
+use crate::parameter::{Kind, Parameter, RECORD};
 
 /// Keys of a file that are not knobs of the leaf.
 const SEED: &str = "seed";
 const VERSION: &str = "version";
+const VARY: &str = "vary";
 
 pub(super) fn document(text: &str, origin: &str) -> Result<Document, DocumentError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -36,26 +38,81 @@ impl Reader<'_> {
             let fail = |problem: String| DocumentError { origin: origin.clone(), problem };
             match value.get_ref() {
                 DeValue::Table(inner) => {
-                    let group = format!("{key}.");
-                    if !parameters().iter().any(|p| p.key.starts_with(&group)) {
+                    if !records::is_group(&key) {
                         return Err(fail(unknown(&key)));
                     }
-                    self.table(&group, inner)?;
+                    self.table(&format!("{key}."), inner)?;
                 }
+                DeValue::Array(items) if records::is_list(&key) => self.records(&key, items)?,
                 value if key == SEED => {
                     let seed = integer(value).and_then(|n| u64::try_from(n).ok());
                     let wrong = || fail("seed takes a whole number from 0 on".into());
                     self.document.seed = Some(seed.ok_or_else(wrong)?);
                 }
                 _ if key == VERSION => {}
+                value if key == VARY => {
+                    let text = match value {
+                        DeValue::String(text) => text.to_string(),
+                        value => float(value).map_or_else(String::new, |x| x.to_string()),
+                    };
+                    self.document.vary = Some(percent(&text).map_err(fail)?);
+                }
                 value => {
                     let parameter = find(&key).ok_or_else(|| fail(unknown(&key)))?;
-                    let value = read(value, parameter).map_err(fail)?;
+                    let value = read(value, &parameter).map_err(fail)?;
                     self.document.entries.insert(key, Entry { value, origin });
                 }
             }
         }
         Ok(())
+    }
+}
+
+impl Reader<'_> {
+    /// `[[list]]`, `[[list]]`, …: all the records of a list.
+    fn records(&mut self, list: &str, items: &DeArray<'_>) -> Result<(), DocumentError> {
+        self.document.start_list(list);
+        for (i, item) in items.iter().enumerate() {
+            let origin = format!("{}:{}", self.origin, (self.line_of)(item.span().start));
+            let fail = |problem: String| DocumentError { origin: origin.clone(), problem };
+            let DeValue::Table(inner) = item.get_ref() else {
+                return Err(fail(format!("{list} takes tables: write [[{list}]] over each")));
+            };
+            if i == records::MOST {
+                return Err(fail(format!("{list} has {} records; the most is {i}", items.len())));
+            }
+            self.table(&format!("{list}.{}.", i + 1), inner)?;
+            // A record that gives nothing is one all the same.
+            if self.document.record_count(list) == i {
+                let listed = records::lists().into_iter().find(|(name, _)| *name == list);
+                let (first, parameter) = listed.expect("a list").1[0];
+                let value = super::value::default_of(&parameter.key).expect("listed");
+                let entry = Entry { value, origin };
+                self.document.entries.insert(format!("{list}.{}.{first}", i + 1), entry);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The percentage of `vary=20` or `vary=20%`; `None` for another key.
+pub(super) fn variation(text: &str, origin: &str) -> Result<Option<f64>, DocumentError> {
+    match text.split_once('=') {
+        Some((key, value)) if key.trim() == VARY => {
+            let fail = |problem| DocumentError { origin: origin.to_owned(), problem };
+            percent(value).map(Some).map_err(fail)
+        }
+        _ => Ok(None),
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let number = text.strip_suffix('%').unwrap_or(text).trim().parse::<f64>();
+    match number {
+        Ok(x) if (0.0..=100.0).contains(&x) => Ok(x),
+        Ok(x) => Err(format!("{VARY} = {x} is outside 0 to 100 %")),
+        Err(_) => Err(format!("{VARY} = `{text}`: it takes a percentage, as 20 or 20%")),
     }
 }
 
@@ -77,15 +134,11 @@ pub(super) fn assignment(text: &str, origin: &str) -> Result<(String, Value), Do
             let table = DeTable::parse(&line).map_err(|_| {
                 fail(format!("{key} = {value}: not {}", kind_in_words(&parameter.kind)))
             })?;
-            read(table.get_ref()["x"].get_ref(), parameter).map_err(fail)?
+            read(table.get_ref()["x"].get_ref(), &parameter).map_err(fail)?
         }
-        _ => number_text(value, parameter).map_err(fail)?,
+        _ => number_text(value, &parameter).map_err(fail)?,
     };
-    check(value, parameter).map(|value| (key.to_owned(), value)).map_err(fail)
-}
-
-fn find(key: &str) -> Option<&'static Parameter> {
-    parameters().iter().find(|p| p.key == key)
+    check(value, &parameter).map(|value| (key.to_owned(), value)).map_err(fail)
 }
 
 fn unknown(key: &str) -> String {
@@ -93,8 +146,13 @@ fn unknown(key: &str) -> String {
     // A last part that stands elsewhere is more likely the right word in the wrong group.
     let last = key.rsplit('.').next().unwrap_or(key);
     let same_ending = || keys().find(|k| k.rsplit('.').next() == Some(last));
-    match nearest(key, LIKE_A_KEY, keys()).or_else(same_ending) {
-        Some(near) => format!("unknown key `{key}`; did you mean `{near}`?"),
+    let plain = records::template(key);
+    match nearest(plain.as_deref().unwrap_or(key), LIKE_A_KEY, keys()).or_else(same_ending) {
+        Some(near) => {
+            let number = key.split('.').find(|part| part.parse::<usize>().is_ok()).unwrap_or("1");
+            let near = near.replace(&format!(".{RECORD}."), &format!(".{number}."));
+            format!("unknown key `{key}`; did you mean `{near}`?")
+        }
         None => format!("unknown key `{key}`; `venation presets show beech` lists all keys"),
     }
 }

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use crate::parameter::{Kind, Parameter};
+use super::records;
+use crate::parameter::{Kind, Parameter, Parameters};
 use crate::spec::LeafSpec;
 
 /// A value as a document gives it.
@@ -125,15 +126,12 @@ pub(crate) fn nearest<'a>(
         .map(|(_, candidate)| candidate)
 }
 
-/// The default leaf as a tree of TOML values.
-static DEFAULTS: LazyLock<toml::Value> = LazyLock::new(|| {
-    toml::Value::try_from(LeafSpec::default()).expect("the default leaf is plain data")
-});
+/// The default leaf as a tree of TOML values, with one record in every list of them.
+static DEFAULTS: LazyLock<toml::Value> = LazyLock::new(|| LeafSpec::defaults().into());
 
 /// The default of a key; `None` for an unknown key.
 pub(super) fn default_of(key: &str) -> Option<Value> {
-    let parameter = super::parameters().iter().find(|p| p.key == key)?;
-    from_plain(&DEFAULTS, parameter)
+    from_plain(&DEFAULTS, records::listed(key)?)
 }
 
 /// The value at a parameter's key in a tree of plain (drawn) values.

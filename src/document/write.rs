@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Comments, Document, Value, parameters};
-use crate::parameter::{Kind, Parameter};
+use crate::parameter::{Kind, Parameter, RECORD};
 
 pub(super) fn toml(document: &Document, comments: Comments) -> String {
     let mut text = String::new();
@@ -12,9 +12,23 @@ pub(super) fn toml(document: &Document, comments: Comments) -> String {
     if let Some(seed) = document.seed {
         let _ = writeln!(text, "seed = {seed}");
     }
+    if let Some(vary) = document.vary {
+        if comments == Comments::Full {
+            let _ =
+                writeln!(text, "# Every number of the margin perturbed by up to so many percent.");
+        }
+        let _ = writeln!(text, "vary = {}", float(vary));
+    }
     // Plain keys of a group must stand before the tables inside it.
     let mut group = String::new();
     for parameter in in_table_order() {
+        if let Some((list, _)) = parameter.key.split_once(&format!(".{RECORD}.")) {
+            if list != group {
+                list.clone_into(&mut group);
+                records(&mut text, document, list, comments);
+            }
+            continue;
+        }
         let (table, name) = parameter.key.rsplit_once('.').unwrap_or(("", &parameter.key));
         if table != group {
             table.clone_into(&mut group);
@@ -27,6 +41,31 @@ pub(super) fn toml(document: &Document, comments: Comments) -> String {
         let _ = writeln!(text, "{name} = {}", shown(&value));
     }
     text
+}
+
+/// The records of a list, one table each; when there are none, what one would hold as a comment.
+fn records(text: &mut String, document: &Document, list: &str, comments: Comments) {
+    let lists = super::records::lists();
+    let keys = lists.iter().find(|(name, _)| *name == list).map_or(&[][..], |(_, keys)| keys);
+    let count = document.record_count(list);
+    if count == 0 && comments == Comments::Full {
+        let _ = writeln!(text, "\n# [[{list}]]");
+        for (name, parameter) in keys {
+            let value = document.value(&parameter.key).expect("every parameter has a default");
+            let _ = writeln!(text, "# {name} = {}  # {}", shown(&value), comment(parameter));
+        }
+    }
+    for number in 1..=count {
+        let _ = writeln!(text, "\n[[{list}]]");
+        for (name, parameter) in keys {
+            let value = document.value(&format!("{list}.{number}.{name}"));
+            let value = value.expect("every parameter has a default");
+            if comments == Comments::Full && number == 1 {
+                let _ = writeln!(text, "# {}", comment(parameter));
+            }
+            let _ = writeln!(text, "{name} = {}", shown(&value));
+        }
+    }
 }
 
 /// Parameters so that each table's keys stand together, tables in order of first appearance.

@@ -1,7 +1,10 @@
 //! Mathematics that has never heard of leaves. Vectors are glam's `DVec2`.
 
 pub mod bspline;
+pub mod deviation;
+pub mod minimise;
 pub mod noise;
+pub mod nurbs;
 pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;

@@ -4,15 +4,14 @@
 //! with a given tangent at each: base, (tail), waist, (shoulder), apex.
 //!
 //! Source: S. Garg, *Procedural modelling and constrained morphing of leaves*, PhD thesis, 2011,
-//! chapter 5. Control points by equations 5.15 and 5.20, which are one rule for any number of
-//! landmarks (see `curve`); u₃ in 5.16 is cumulative chord length, as in 5.9.
+//! chapter 5; the curve itself is in [`super::curve`].
 //!
 //! Coordinates of the settings are relative to the primary vein (length 1), as in the thesis.
 
 use glam::DVec2;
 
-use super::{Margin, MarginError, MarginSpec};
-use crate::geometry::bspline::QuadraticBSpline;
+use super::curve::{self, Waypoint};
+use super::{Margin, MarginError, MarginSpec, Outline};
 use crate::parameter::parameters;
 use crate::units::Angle;
 
@@ -40,10 +39,6 @@ parameters! {
     }
 }
 
-/// How far the polygon may stray from the curve, in lengths of the blade: a sixth of a texel on a
-/// blade 8192 texels long.
-const TOLERANCE: f64 = 2e-5;
-
 impl SideSpec {
     /// This side mixed with `other`: this one at `share` 0, the other at 1.
     fn mixed(&self, other: &Self, share: f64) -> Self {
@@ -62,11 +57,8 @@ impl SideSpec {
     }
 }
 
-/// A point the margin passes through, and its direction there.
-type Landmark = (DVec2, DVec2);
-
 /// The landmarks of one side as if it were the right one, from base to apex.
-fn landmarks(side: &SideSpec, name: &str) -> Result<Vec<Landmark>, MarginError> {
+fn waypoints(side: &SideSpec, name: &str) -> Result<Vec<Waypoint>, MarginError> {
     let wrong = |key: &str, value: f64, problem: &str| MarginError::Landmark {
         key: format!("margin.{name}.{key}"),
         value,
@@ -100,44 +92,24 @@ fn landmarks(side: &SideSpec, name: &str) -> Result<Vec<Landmark>, MarginError> 
     }
     let base = Angle::from_degrees(side.base_angle_deg);
     let apex = Angle::from_degrees(side.apex_angle_deg);
-    let mut list = vec![(DVec2::ZERO, DVec2::new(base.sin(), base.cos()))];
+    let mut list = vec![Waypoint { at: DVec2::ZERO, towards: DVec2::new(base.sin(), base.cos()) }];
+    let mut pass = |x, y, towards| list.push(Waypoint { at: DVec2::new(x, y), towards });
     if basal {
-        list.push((DVec2::new(side.tail_x, -side.tail_depth), DVec2::X));
+        pass(side.tail_x, -side.tail_depth, DVec2::X);
     }
-    list.push((DVec2::new(side.waist_x, side.waist_y), DVec2::Y));
+    pass(side.waist_x, side.waist_y, DVec2::Y);
     if apical {
-        list.push((DVec2::new(side.shoulder_x, 1.0 + side.shoulder_height), DVec2::NEG_X));
+        pass(side.shoulder_x, 1.0 + side.shoulder_height, DVec2::NEG_X);
     }
-    list.push((DVec2::Y, DVec2::new(-apex.sin(), apex.cos())));
+    pass(0.0, 1.0, DVec2::new(-apex.sin(), apex.cos()));
     Ok(list)
 }
 
-/// The curve through landmarks with tangents: equations 5.15 (three landmarks) and 5.20 (four),
-/// which are one rule: the control points beside landmark i lie at pᵢ ± α tᵢ Δu/4, Δu being the
-/// parameter interval on that side. `tension` scales α = D, the total chord length.
-fn curve(landmarks: &[Landmark], tension: f64) -> QuadraticBSpline {
-    let chords: Vec<f64> = landmarks.windows(2).map(|w| w[0].0.distance(w[1].0)).collect();
-    let total: f64 = chords.iter().sum();
-    let alpha = total * tension;
-    let last = landmarks.len() - 1;
-    let (mut control, mut knots) = (vec![landmarks[0].0], vec![0.0; 3]);
-    let mut u = 0.0;
-    for (i, &(p, t)) in landmarks.iter().enumerate() {
-        if i > 0 {
-            control.push(p - t * (alpha * chords[i - 1] / total / 4.0));
-            if i < last {
-                knots.push(u);
-            }
-        }
-        if i < last {
-            control.push(p + t * (alpha * chords[i] / total / 4.0));
-            knots.push(u + chords[i] / total / 2.0);
-            u += chords[i] / total;
-        }
+impl MarginSpec {
+    /// The two sides of a unilobed leaf, right and left, as they are drawn.
+    pub(super) fn sides(&self) -> [SideSpec; 2] {
+        [self.right.clone(), self.right.mixed(&self.left, self.asymmetry)]
     }
-    control.push(landmarks[last].0);
-    knots.extend([1.0; 3]);
-    QuadraticBSpline::new(knots, control)
 }
 
 /// The margin of a unilobed leaf.
@@ -148,18 +120,15 @@ fn curve(landmarks: &[Landmark], tension: f64) -> QuadraticBSpline {
 /// [`MarginError::SelfCrossing`] when the sides meet.
 pub fn unilobed(spec: &MarginSpec) -> Result<Margin, MarginError> {
     let left = spec.right.mixed(&spec.left, spec.asymmetry);
-    let side = |side: &SideSpec, name| -> Result<Vec<DVec2>, MarginError> {
-        Ok(curve(&landmarks(side, name)?, side.tension).flattened(TOLERANCE))
-    };
-    let mut outline = side(&spec.right, "right")?;
-    let apex = outline.len() - 1;
-    let left = side(&left, "left")?;
-    // The left side runs down from the apex; both its ends are there already.
-    outline.extend(left[1..left.len() - 1].iter().rev().map(|p| DVec2::new(-p.x, p.y)));
-    for p in &mut outline {
-        *p *= spec.length_mm;
-    }
-    Margin::new(outline, apex, Vec::new(), "lower tension, or narrow tail_x or shoulder_x")
+    let mut points = vec![DVec2::ZERO];
+    curve::append(&mut points, &waypoints(&spec.right, "right")?, spec.right.tension);
+    let apex = points.len() - 1;
+    curve::append_reversed(&mut points, &waypoints(&left, "left")?, left.tension);
+    points.pop();
+    points[apex + 1..].iter_mut().for_each(|p| p.x = -p.x);
+    let outline = Outline { points, apex, ..Outline::default() };
+    let hint = "lower tension, or narrow tail_x or shoulder_x";
+    Margin::from_outline(outline.scaled(DVec2::splat(spec.length_mm)), hint)
 }
 
 #[cfg(test)]
@@ -169,49 +138,6 @@ mod tests {
 
     fn plain() -> SideSpec {
         SideSpec { waist_x: 0.3, waist_y: 0.4, ..SideSpec::default() }
-    }
-
-    #[test]
-    fn control_points_of_three_landmarks_follow_equation_5_15() {
-        let marks = landmarks(&plain(), "right").unwrap();
-        let spline = curve(&marks, 1.0);
-        let [(p1, t1), (p2, t2), (p3, t3)] = marks[..] else { panic!("three landmarks") };
-        let d = p1.distance(p2) + p2.distance(p3);
-        let u2 = p1.distance(p2) / d;
-        let expected = [
-            p1,
-            p1 + d * t1 * (u2 / 4.0),
-            p2 - d * t2 * (u2 / 4.0),
-            p2 + d * t2 * ((1.0 - u2) / 4.0),
-            p3 - d * t3 * ((1.0 - u2) / 4.0),
-            p3,
-        ];
-        for (q, e) in spline.control().iter().zip(expected) {
-            assert!(q.distance(e) < 1e-14, "{q} {e}");
-        }
-    }
-
-    #[test]
-    fn the_curve_passes_through_every_landmark_with_its_tangent() {
-        let side = SideSpec {
-            base_angle_deg: 120.0,
-            tail_depth: 0.12,
-            apex_angle_deg: 110.0,
-            shoulder_height: 0.05,
-            ..plain()
-        };
-        let marks = landmarks(&side, "right").unwrap();
-        assert_eq!(marks.len(), 5);
-        let spline = curve(&marks, 1.0);
-        let total: f64 = marks.windows(2).map(|w| w[0].0.distance(w[1].0)).sum();
-        let mut u = 0.0;
-        for (i, &(p, t)) in marks.iter().enumerate() {
-            assert!(spline.at(u).distance(p) < 1e-12, "landmark {i}");
-            let (before, after) = (spline.at(u - 1e-6), spline.at(u + 1e-6));
-            let direction = (after - before).normalize();
-            assert!(direction.dot(t) > 1.0 - 1e-5, "tangent {i}: {direction} {t}");
-            u += marks.get(i + 1).map_or(0.0, |next| p.distance(next.0) / total);
-        }
     }
 
     #[test]

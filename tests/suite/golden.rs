@@ -15,7 +15,7 @@ use venation::raster::Grid;
 use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
 
-type Picture = Grid<[u8; 4]>;
+pub(crate) type Picture = Grid<[u8; 4]>;
 
 /// A channel may be off by this much: rounding of the last bit in another build.
 const CHANNEL_TOLERANCE: u8 = 3;
@@ -35,7 +35,7 @@ fn read(path: &Path) -> Option<Picture> {
 }
 
 /// Asserts that a picture is the expected one, or makes it so.
-fn compare(name: &str, made: &Picture) {
+pub(crate) fn compare(name: &str, made: &Picture) {
     let path = golden(name);
     let png = colour_png(made, &Caption::default());
     if std::env::var_os("BLESS").is_some() {
@@ -68,7 +68,7 @@ fn compare(name: &str, made: &Picture) {
     }
 }
 
-fn document(preset: &str, settings: &[&str]) -> Document {
+pub(crate) fn document(preset: &str, settings: &[&str]) -> Document {
     let mut document = presets::find(preset).expect("a preset").document().expect("it parses");
     for setting in settings {
         document.set(setting, "golden").expect("a valid setting");
@@ -76,14 +76,14 @@ fn document(preset: &str, settings: &[&str]) -> Document {
     document
 }
 
-fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
+pub(crate) fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
     let mut document = document.clone();
     document.set(&format!("texture.size_px={size}"), "golden").expect("a size");
     let spec = document.resolve(Seed(seed)).expect("it resolves");
     pipeline::generate(&spec, Seed(seed), &mut Silent).expect("a leaf")
 }
 
-fn panel(picture: Picture, label: &str) -> Panel {
+pub(crate) fn panel(picture: Picture, label: &str) -> Panel {
     Panel { picture, label: label.to_owned(), notes: Vec::new() }
 }
 
@@ -104,7 +104,7 @@ fn heights(side: &venation::texture::SideMaps) -> Picture {
     shown(&side.height, &side.base_colour, |h| [(h >> 8) as u8; 3])
 }
 
-fn sheet(title: &str, panels: &[Panel], columns: usize, panel_px: usize) -> Picture {
+pub(crate) fn sheet(title: &str, panels: &[Panel], columns: usize, panel_px: usize) -> Picture {
     montage::sheet(title, panels, Layout { columns, panel_px })
 }
 
@@ -207,12 +207,26 @@ fn golden_growth_types() {
     let panels: Vec<Panel> = venation::growth::GrowthType::ALL
         .iter()
         .map(|growth| {
-            let settings = [&format!("growth.type={growth}")[..], "growth.start_step=200"];
+            // What growth alone makes of it, as in the papers.
+            let settings = [
+                &format!("growth.type={growth}")[..],
+                "growth.start_step=200",
+                "veins.guides.primary=none",
+                "veins.algorithm=auxin-open",
+            ];
             let leaf = leaf(&document("lilac", &settings), 1, 512);
             panel(leaf.textures.back.base_colour, growth.word())
         })
         .collect();
     compare("readme_growth", &sheet("growth types, seen from below", &panels, 5, 384));
+}
+
+#[test]
+fn golden_veins_from_growth_alone() {
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "beech", "--by", "emergence", "--size", "768", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_emergence", &read(&folder.path().join("s.png")).expect("the sheet"));
 }
 
 #[test]

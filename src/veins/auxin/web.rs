@@ -100,6 +100,11 @@ impl Web {
         })
     }
 
+    /// Whether one edge at most ends at a node.
+    pub(super) fn is_tip(&self, node: NodeId) -> bool {
+        self.beside(node).nth(1).is_none()
+    }
+
     pub(super) fn are_beside(&self, a: NodeId, b: NodeId) -> bool {
         self.beside(a).any(|node| node == b)
     }

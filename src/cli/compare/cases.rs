@@ -175,9 +175,7 @@ impl Case {
             Self::Emergence(emergence) => emergence.apply(spec)?,
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
-                let pixel = (margin::build(&spec.margin, Seed(1))?.area_mm2()
-                    / IVY_PX2)
-                    .sqrt();
+                let pixel = (margin::build(&spec.margin, Seed(1))?.area_mm2() / IVY_PX2).sqrt();
                 spec.veins.algorithm = Algorithm::Particles;
                 let particles = &mut spec.veins.particles;
                 particles.pattern = pattern;

@@ -37,7 +37,7 @@ const BAND: usize = 32;
 const SLIT_MM: f64 = 0.15;
 
 /// The petiole is at least this share of its own width where it meets the blade.
-const NECK: f64 = 0.62;
+const NECK: f64 = 0.74;
 
 pub(super) struct Scene {
     pub(super) size: usize,

@@ -138,31 +138,71 @@ fn golden_presets_front_and_back() {
 #[test]
 fn golden_colour_types() {
     let types = [("uniform", 1.0), ("from-veins", 1.0), ("from-edges", 8.0), ("speckled", 2.5)];
-    let panels: Vec<Panel> = types
-        .iter()
-        .map(|(word, spread)| {
+    let mut panels = Vec::new();
+    for model in ["pigments", "hsv"] {
+        for (word, spread) in types {
             let settings = [
-                &format!("colour.type={word}")[..],
+                &format!("colour.model={model}")[..],
+                &format!("colour.type={word}"),
                 &format!("colour.spread_mm={spread}"),
                 "colour.vein_spread=5",
                 "colour.speckle_count=160",
             ];
             let leaf = leaf(&document("lilac", &settings), 3, 512);
-            panel(leaf.textures.front.base_colour, word)
-        })
-        .collect();
+            panels.push(panel(leaf.textures.front.base_colour, &format!("{model}, {word}")));
+        }
+    }
     compare("readme_colour", &sheet("colour types", &panels, 4, 384));
 }
 
 #[test]
+fn golden_season_of_a_maple() {
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "maple", "--by", "season", "--size", "512", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_season", &read(&folder.path().join("s.png")).expect("the sheet"));
+}
+
+#[test]
+fn golden_damage_of_an_oak() {
+    let wounds = [
+        "holes=0.15",
+        "margin_bites=0.2",
+        "skeletonise=0.35",
+        "mines=0.5",
+        "spots=0.5",
+        "scorch=0.4",
+        "tears=0.6",
+    ];
+    let panels: Vec<Panel> = wounds
+        .iter()
+        .map(|wound| {
+            let settings = [&format!("damage.{wound}")[..]];
+            let leaf = leaf(&document("oak", &settings), 2, 512);
+            panel(leaf.textures.front.base_colour, wound)
+        })
+        .collect();
+    compare("readme_damage", &sheet("damage", &panels, 4, 384));
+}
+
+#[test]
 fn golden_relief_of_both_sides() {
-    let leaf = leaf(&document("beech", &[]), 2, 512);
+    let leaf = leaf(&document("beech", &["output.maps=height,normal,preview"]), 2, 512);
     let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let lit = front.preview.map(|&[r, g, b]| [r, g, b, 255]);
+    let side = lit.height();
+    let view = |panel: usize| {
+        let row = |y: usize| lit.row(y)[panel * side..(panel + 1) * side].to_vec();
+        Grid::from_values(side, side, (0..side).flat_map(row).collect())
+    };
     let panels = [
         panel(heights(front), "front, height"),
         panel(normals(front), "front, normal"),
         panel(heights(back), "back, height"),
         panel(normals(back), "back, normal"),
+        panel(view(0), "front, lit"),
+        panel(view(1), "back, lit"),
+        panel(view(2), "against the light"),
     ];
     compare("readme_relief", &sheet("relief", &panels, 4, 384));
 }

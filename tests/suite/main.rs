@@ -10,6 +10,7 @@ mod imports; // outlines from files, odd and broken ones too
 mod inspect; // measures of leaves, and graphs for other programs
 mod layers; // who may use whom
 mod margins; // teeth and instances of every preset, from outside
+mod material; // light, seasons, films and wounds
 mod morph; // one leaf turning into another
 mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious

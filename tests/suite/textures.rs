@@ -18,17 +18,17 @@ use venation::veins::{VeinGraph, Venation};
 use crate::sample_leaf;
 
 #[derive(Clone, Default)]
-struct Settings {
-    texture: TextureSpec,
-    petiole: PetioleSpec,
-    colour: ColourSpec,
-    state: StateSpec,
-    damage: DamageSpec,
-    relief: ReliefSpec,
+pub(crate) struct Settings {
+    pub(crate) texture: TextureSpec,
+    pub(crate) petiole: PetioleSpec,
+    pub(crate) colour: ColourSpec,
+    pub(crate) state: StateSpec,
+    pub(crate) damage: DamageSpec,
+    pub(crate) relief: ReliefSpec,
 }
 
 impl Settings {
-    fn of_size(size_px: u64) -> Self {
+    pub(crate) fn of_size(size_px: u64) -> Self {
         Self { texture: TextureSpec { size_px, ..TextureSpec::default() }, ..Self::default() }
     }
 
@@ -45,7 +45,7 @@ impl Settings {
         }
     }
 
-    fn painted(&self, margin: &Margin, veins: &Venation) -> TextureSet {
+    pub(crate) fn painted(&self, margin: &Margin, veins: &Venation) -> TextureSet {
         paint(&self.as_paint(), margin, veins, Seed(3), &mut Silent).expect("a leaf can be painted")
     }
 }
@@ -84,7 +84,8 @@ fn each_map_can_be_had_alone_and_is_the_same() {
         let set = paint(&alone, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
         assert_eq!(set.check(), None, "{map}");
         for (alone, all) in [(&set.front, &all.front), (&set.back, &all.back)] {
-            let bytes = map.channels().count() * usize::from(map.bits() / 8) * 64 * 64;
+            let (width, height) = alone.dimensions(map);
+            let bytes = map.channels().count() * usize::from(map.bits() / 8) * width * height;
             assert_eq!(alone.samples(map).len(), bytes, "{map}");
             assert!(alone.samples(map) == all.samples(map), "{map}");
         }

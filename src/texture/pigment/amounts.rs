@@ -60,7 +60,7 @@ parameters! {
         /// Bloom of the upper side.
         front_bloom: number(0.0, 0.0..=1.0, ""),
         /// Anthocyanin of a leaf that has just unfolded.
-        flush_anthocyanin_ug_cm2: number(3.0, 0.0..=60.0, "µg/cm²"),
+        flush_anthocyanin_ug_cm2: number(0.4, 0.0..=60.0, "µg/cm²"),
         /// How it turns in autumn.
         autumn: group(SenescenceSpec, SenescenceSpec::default()),
     }
@@ -96,7 +96,7 @@ impl Amounts {
 type Mix = [f32; 5];
 
 /// Dead tissue, and tissue of which only the skins are left.
-const DEAD: Mix = [0.3, 2.0, 0.8, 1.9, 2.1];
+const DEAD: Mix = [0.4, 3.0, 0.1, 1.6, 2.1];
 const MINED: Mix = [1.8, 2.2, 0.3, 0.12, 2.2];
 
 /// A bloom is this white (sRGB).
@@ -125,7 +125,7 @@ pub(in crate::texture) struct Mixer {
     back_bloom: f32,
     back_brown: f32,
     front_bloom: f32,
-    /// Chlorophyll's colour and carotenoid of a leaf this young, as shares.
+    /// Chlorophyll's colour, and the other pigments, of a leaf this young, as shares.
     young: [f32; 2],
     flush: f32,
     seasons: Vec<Turned>,
@@ -163,7 +163,7 @@ impl Mixer {
             back_bloom: pigments.back_bloom as f32,
             back_brown: pigments.back_brown as f32,
             front_bloom: pigments.front_bloom as f32,
-            young: [1.0 - 0.55 * youth, 1.0 - 0.4 * youth],
+            young: [1.0 - 0.33 * youth, 1.0 - 0.5 * youth],
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
             petiole: petiole.towards(dead, dry),
@@ -253,6 +253,7 @@ impl Mixer {
         let green = mix[0] / (mix[0] + HALF_GREEN) * left;
         mix[0] = HALF_GREEN * green / (1.0 - green);
         mix[1] *= turned.carotenoid * self.young[1] * (1.0 - 0.3 * condition.chlorosis);
+        mix[2] *= self.young[1];
         mix[2] += turned.anthocyanin * red.max(0.2) + self.flush * red.max(0.4);
         mix[3] += turned.brown;
         mix[4] += turned.structure;

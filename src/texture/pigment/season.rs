@@ -32,7 +32,7 @@ parameters! {
         /// Brown at the end.
         brown: number(1.2, 0.0..=3.0, ""),
         /// How much of the season lies between the first and the last place to turn.
-        spread: number(0.3, 0.0..=2.0, ""),
+        spread: number(0.25, 0.0..=2.0, ""),
         /// How much earlier the margin turns.
         margin_first: number(0.3, -1.0..=1.0, ""),
         /// How much earlier the tip turns.
@@ -169,11 +169,14 @@ impl Turned {
         let end = smooth(0.56, 1.0, s);
         let kept = spec.carotenoid_kept as f32;
         Self {
-            chlorophyll: 1.0 - smooth(0.0, 0.66, s),
-            carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.6 * end),
-            anthocyanin: spec.anthocyanin_ug_cm2 as f32 * smooth(0.08, 0.62, s) * (1.0 - 0.7 * end),
+            // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
+            chlorophyll: 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0)),
+            carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.45 * end),
+            anthocyanin: spec.anthocyanin_ug_cm2 as f32
+                * smooth(0.08, 0.62, s)
+                * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
-            structure: 0.5 * end,
+            structure: 0.25 * smooth(0.15, 0.6, s) + 0.3 * end,
         }
     }
 }

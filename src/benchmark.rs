@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use cpu_time::ThreadTime;
+use cpu_time::{ProcessTime, ThreadTime};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,9 @@ pub struct Measure {
     pub joins: usize,
     /// Steps made.
     pub steps: u64,
-    /// Time of the growth alone, without widths (s, wall clock of one thread).
+    /// Living sources, summed over the steps.
+    pub source_steps: u64,
+    /// Time of the growth alone, without widths (s, wall clock).
     pub seconds: f64,
     /// Seconds of the processor, which a busy machine does not stretch.
     pub cpu_seconds: f64,
@@ -198,14 +200,19 @@ fn measure(
     let mut rng = seed.stream(Stage::AuxinSources);
     let mut roots = VeinGraph::new();
     roots.add_root(root);
-    let (wall, processor) = (Instant::now(), ThreadTime::now());
+    let (wall, thread, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
     let grown = veins::auxin::grow(spec, blade, roots, &mut rng, &mut Silent)?;
-    let (seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
+    let seconds = wall.elapsed().as_secs_f64();
+    // With several threads all of the process works on this.
+    let alone = rayon::current_num_threads() == 1;
+    let processor = if alone { thread.elapsed() } else { process.elapsed() };
+    let cpu_seconds = processor.as_secs_f64();
     Ok(Measure {
         sources: grown.sources,
         nodes: grown.graph.len(),
         joins: grown.graph.joins().len(),
         steps: grown.nodes_after_step.len() as u64,
+        source_steps: grown.source_steps,
         seconds,
         cpu_seconds,
         unreached: grown.unreached,
@@ -356,6 +363,7 @@ mod tests {
             nodes: n,
             joins: 0,
             steps: 1,
+            source_steps: n as u64,
             seconds: 1.0,
             cpu_seconds: (n * n) as f64,
             unreached: Unreached::default(),

@@ -1,8 +1,13 @@
 //! `venation bench`: how long veins take to grow.
 
+mod floor;
+mod memory;
+mod table;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use rayon::ThreadPool;
 use serde::Serialize;
 use venation::benchmark::{self, BenchmarkError, Measure, Workload};
 use venation::margin::{self, Margin};
@@ -11,6 +16,7 @@ use venation::seed::Seed;
 use venation::veins::Algorithm;
 
 use super::Failure;
+use table::Line;
 
 /// Time the growth of veins on a standard leaf, a workload of your own or the tables of Foster's
 /// report.
@@ -32,6 +38,18 @@ pub(crate) struct Args {
     /// Grow closed venation (veins meet and form loops) on the standard leaf or the workload.
     #[arg(long, conflicts_with = "suite")]
     closed: bool,
+    /// Whom sources call: `standard` within four mean spacings (or what the workload says), `unlimited`
+    /// at any distance, as in the paper of 2005.
+    #[arg(long, value_name = "RANGE", default_value = "standard", conflicts_with = "suite")]
+    attraction: Attraction,
+    /// Threads to grow on; what grows is the same.
+    #[arg(long, short = 't', value_name = "N", default_value_t = 1)]
+    threads: usize,
+    /// Also time a program on the same sources: called as PATH FOLDER N RUNS, it reads the sources
+    /// from FOLDER/auxin_N.csv, in lengths of the blade, and prints a line of JSON with `cpu` for each
+    /// run.
+    #[arg(long, value_name = "PATH", conflicts_with = "suite")]
+    floor: Option<PathBuf>,
     /// Runs of each; the median time counts.
     #[arg(long, value_name = "N", default_value_t = 3,
           value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -57,6 +75,13 @@ enum Suite {
     Foster,
 }
 
+/// How far sources attract.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Attraction {
+    Standard,
+    Unlimited,
+}
+
 /// Why there is no benchmark.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
@@ -76,27 +101,19 @@ pub(crate) enum Error {
         /// What is wrong with it.
         source: BenchmarkError,
     },
+    /// The floor cannot be timed.
+    #[error("--floor {0}")]
+    Floor(String),
     /// A run failed.
     #[error(transparent)]
     Run(#[from] BenchmarkError),
-}
-
-/// One line of the results.
-#[derive(Debug, Serialize)]
-struct Line {
-    /// What was run.
-    name: String,
-    /// What the report prints (s).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    printed_seconds: Option<f64>,
-    #[serde(flatten)]
-    measure: Measure,
 }
 
 /// Everything that was measured.
 #[derive(Debug, Serialize)]
 struct Results {
     runs: u32,
+    threads: usize,
     lines: Vec<Line>,
     /// Exponent of time against auxin count, where counts were varied.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -109,43 +126,91 @@ impl Args {
         if self.closed {
             workload.veins.algorithm = Algorithm::AuxinClosed;
         }
+        if self.attraction == Attraction::Unlimited {
+            workload.veins.attraction_distance_mm = 0.0;
+        }
         workload
+    }
+
+    /// Runs a workload, and the floor beside it.
+    fn measured(
+        &self,
+        pool: &ThreadPool,
+        name: String,
+        workload: &Workload,
+    ) -> Result<Line, Failure> {
+        let mut line = self.timed(pool, name, || benchmark::run(workload)).map_err(Error::Run)?;
+        if let Some(program) = &self.floor {
+            let seconds = floor::seconds(program, workload, self.runs).map_err(Error::Floor)?;
+            line.floor_seconds = Some(seconds);
+        }
+        Ok(line)
+    }
+
+    /// The run of median time, with the memory of the first.
+    fn timed(
+        &self,
+        pool: &ThreadPool,
+        name: String,
+        run: impl Fn() -> Result<Measure, BenchmarkError> + Sync,
+    ) -> Result<Line, BenchmarkError> {
+        memory::forget_peak();
+        let before = memory::now();
+        let first = pool.install(&run)?;
+        // Later runs reuse what this one gave back.
+        let bytes = memory::peak().zip(before).map(|(peak, before)| peak.saturating_sub(before));
+        let bytes_per_node = bytes.map(|bytes| bytes as f64 / first.nodes as f64);
+        let mut measures = vec![first];
+        for _ in 1..self.runs {
+            measures.push(pool.install(&run)?);
+        }
+        measures.sort_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
+        let measure = measures.swap_remove(measures.len() / 2);
+        let ns_per_source_step = measure.cpu_seconds * 1e9 / measure.source_steps.max(1) as f64;
+        let (printed_seconds, floor_seconds) = (None, None);
+        Ok(Line {
+            name,
+            printed_seconds,
+            floor_seconds,
+            bytes_per_node,
+            ns_per_source_step,
+            measure,
+        })
     }
 }
 
 /// Runs the benchmark and prints its table to `out`.
 pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
+    let pool = super::generate::pool(Some(args.threads))?;
     super::refuse_existing(args.json.iter().chain(&args.csv), args.force)?;
-    let mut results = Results { runs: args.runs, lines: Vec::new(), exponent: None };
+    let threads = args.threads;
+    let mut results = Results { runs: args.runs, threads, lines: Vec::new(), exponent: None };
     let mut add = |out: &mut dyn Write, line: Line| -> Result<(), Failure> {
-        print(out, &line)?;
+        table::print(out, &line)?;
         results.lines.push(line);
         Ok(())
     };
-    let head = ["", "auxins", "nodes", "joins", "steps", "CPU s", "wall s"];
-    writeln!(out, "{}  not reached", columns(head.map(String::from)))?;
+    table::head(out)?;
     if let Some(Suite::Foster) = args.suite {
         let blade = beech()?;
         for row in benchmark::foster_suite() {
-            let measure =
-                median(args.runs, || benchmark::run_foster(&row, &blade)).map_err(Error::Run)?;
             let name = format!("{} {}", row.table, row.value);
-            add(out, Line { name, printed_seconds: Some(row.printed_seconds), measure })?;
+            let run = || benchmark::run_foster(&row, &blade);
+            let mut line = args.timed(&pool, name, run).map_err(Error::Run)?;
+            line.printed_seconds = Some(row.printed_seconds);
+            add(out, line)?;
         }
     } else if !args.workload.is_empty() {
         for path in &args.workload {
             let workload = args.grown_as(read(path)?);
-            let named = |source| Error::Workload { path: path.clone(), source };
-            let measure = median(args.runs, || benchmark::run(&workload)).map_err(named)?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            add(out, Line { name, printed_seconds: None, measure })?;
+            add(out, args.measured(&pool, name, &workload)?)?;
         }
     } else {
         for &count in &args.auxins {
             let workload = benchmark::standard_workload(count as usize, Seed(args.seed));
             let workload = args.grown_as(workload);
-            let measure = median(args.runs, || benchmark::run(&workload)).map_err(Error::Run)?;
-            add(out, Line { name: "standard".into(), printed_seconds: None, measure })?;
+            add(out, args.measured(&pool, "standard".into(), &workload)?)?;
         }
     }
     if args.suite.is_none() {
@@ -160,7 +225,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
         super::save(path, text.into_bytes())?;
     }
     if let Some(path) = &args.csv {
-        super::save(path, csv(&results.lines).into_bytes())?;
+        super::save(path, table::csv(&results.lines).into_bytes())?;
     }
     Ok(())
 }
@@ -170,67 +235,6 @@ fn beech() -> Result<Margin, Failure> {
     let preset = presets::find("beech").expect("beech comes with venation");
     let spec = preset.document()?.resolve(Seed(1))?;
     Ok(margin::build(&spec.margin, Seed(1)).map_err(venation::error::Error::from)?)
-}
-
-/// The run of median time.
-fn median(
-    runs: u32,
-    mut run: impl FnMut() -> Result<Measure, BenchmarkError>,
-) -> Result<Measure, BenchmarkError> {
-    let mut measures = (0..runs).map(|_| run()).collect::<Result<Vec<_>, _>>()?;
-    measures.sort_by(|a, b| a.cpu_seconds.total_cmp(&b.cpu_seconds));
-    Ok(measures.swap_remove(measures.len() / 2))
-}
-
-fn columns(cells: [String; 7]) -> String {
-    let [name, sources, nodes, joins, steps, cpu, wall] = cells;
-    format!("{name:<28}{sources:>8}{nodes:>9}{joins:>8}{steps:>7}{cpu:>10}{wall:>10}")
-}
-
-fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
-    let m = &line.measure;
-    let cells = [
-        line.name.clone(),
-        m.sources.to_string(),
-        m.nodes.to_string(),
-        m.joins.to_string(),
-        m.steps.to_string(),
-        format!("{:.4}", m.cpu_seconds),
-        format!("{:.4}", m.seconds),
-    ];
-    let report = match line.printed_seconds {
-        Some(seconds) if seconds >= benchmark::FOSTER_GAVE_UP => {
-            format!("  (report: more than {seconds} s)")
-        }
-        Some(seconds) => format!("  (report: {seconds} s)"),
-        None => String::new(),
-    };
-    writeln!(out, "{}  {}{report}", columns(cells), m.unreached)
-}
-
-fn csv(lines: &[Line]) -> String {
-    let mut text = String::from(
-        "name,printed_seconds,auxins,nodes,joins,steps,cpu_seconds,seconds,outside,too_young,out_of_reach,hidden,unfinished\n",
-    );
-    for Line { name, printed_seconds, measure: m } in lines {
-        let printed = printed_seconds.map_or(String::new(), |seconds| seconds.to_string());
-        let left = &m.unreached;
-        text += &format!(
-            "{name},{printed},{},{},{},{},{},{},{},{},{},{},{}\n",
-            m.sources,
-            m.nodes,
-            m.joins,
-            m.steps,
-            m.cpu_seconds,
-            m.seconds,
-            left.outside,
-            left.too_young,
-            left.out_of_reach,
-            left.hidden,
-            left.unfinished
-        );
-    }
-    text
 }
 
 fn read(path: &Path) -> Result<Workload, Error> {

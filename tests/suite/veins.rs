@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use proptest::prelude::*;
+use venation::benchmark;
 use venation::growth::{
     EvenGrowth, GrowingBlade, GrowthSpec, GrowthType, RateAxes, RatePattern, RateSpec,
 };
@@ -150,6 +151,84 @@ fn the_fast_path_agrees_with_the_obvious_one_node_by_node() {
         nodes += fast.graph.len();
     });
     assert!(nodes > 15_000, "the cases have become too easy: {nodes} nodes");
+}
+
+#[test]
+fn attraction_without_limit_agrees_with_the_obvious_one_over_many_tiles() {
+    // Some hundred sources make a few blocks of tiles; the small cases fit into one.
+    for (kind, algorithm) in [
+        (GrowthType::None, Algorithm::AuxinOpen),
+        (GrowthType::Anisotropic, Algorithm::AuxinOpen),
+        (GrowthType::NonUniform, Algorithm::AuxinOpen),
+    ] {
+        let growth = GrowthSpec {
+            r#type: kind,
+            total_steps: 60,
+            vertical_steps: 60,
+            horizontal_steps: 40,
+            start_step: 30,
+            ..GrowthSpec::default()
+        };
+        let blade = GrowingBlade::new(ellipse(), &growth).expect("a blade");
+        let mut rng = Seed(kind as u64).stream(Stage::Tissue);
+        let place = |rng: &mut Rng| [rng.between(-25.0, 25.0), rng.between(0.0, 100.0)];
+        let spec = VeinSpec {
+            algorithm,
+            sources_mm: (0..900).map(|_| place(&mut rng)).collect(),
+            node_step_mm: 1.2,
+            kill_distance_mm: 1.5,
+            attraction_distance_mm: 0.0,
+            ..VeinSpec::default()
+        };
+        let (root, darts) = (blade.root(), || Seed(1).stream(Stage::AuxinSources));
+        let slow = reference::grow(&spec, &blade, root, &mut darts(), Frame::Mature, usize::MAX);
+        let mut bare = veins::VeinGraph::new();
+        bare.add_root(root);
+        let fast = auxin::grow(&spec, &blade, bare, &mut darts(), &mut Silent).expect("grows");
+        assert!(fast.graph.len() > 200, "{kind}: {} nodes", fast.graph.len());
+        assert_eq!(fast.graph.len(), slow.positions.len(), "{kind} {algorithm}");
+        for (id, &p) in fast.graph.positions().iter().enumerate() {
+            let parent = fast.graph.parent(id as u32).map(|parent| parent as usize);
+            assert_eq!(parent, slow.parents[id], "{kind} {algorithm}: node {id}");
+            assert!(p.distance(slow.positions[id]) <= 1e-7, "{kind} {algorithm}: node {id}");
+        }
+    }
+}
+
+#[test]
+fn threads_show_nowhere_in_large_steps() {
+    for algorithm in [Algorithm::AuxinOpen, Algorithm::AuxinClosed] {
+        let mut workload = benchmark::standard_workload(6000, Seed(5));
+        workload.veins.algorithm = algorithm;
+        let growth = GrowthSpec {
+            r#type: GrowthType::None,
+            total_steps: 1000,
+            start_step: 0,
+            ..GrowthSpec::default()
+        };
+        let blade = GrowingBlade::new(workload.margin.clone(), &growth).expect("a blade");
+        // Many roots make steps large enough to be shared out.
+        let mut start = veins::VeinGraph::new();
+        for i in 0..400 {
+            let (x, y) = (f64::from(i % 10) - 4.5, f64::from(i / 10) - 19.5);
+            start.add_root(DVec2::new(2.5 * x, 50.0 + 1.5 * y));
+        }
+        let grow = |threads: usize| {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let mut rng = Seed(1).stream(Stage::AuxinSources);
+            pool.install(|| {
+                auxin::grow(&workload.veins, &blade, start.clone(), &mut rng, &mut Silent)
+            })
+            .expect("grows")
+        };
+        let alone = grow(1);
+        let widest = alone.nodes_after_step.windows(2).map(|w| w[1] - w[0]).max();
+        assert!(widest > Some(300), "steps have become too small: {widest:?}");
+        for threads in [2, 5] {
+            assert!(grow(threads) == alone, "{algorithm} on {threads} threads");
+        }
+    }
 }
 
 #[test]

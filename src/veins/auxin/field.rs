@@ -11,6 +11,7 @@ mod offer;
 use glam::DVec2;
 
 use super::NONE;
+use super::tiles::Found;
 use crate::geometry::Rect;
 use crate::veins::graph::NodeId;
 
@@ -265,21 +266,31 @@ impl<S> Field<S> {
         self.slots_in(row, column).map(|slot| self.bound2[slot]).fold(DEAD, f64::max)
     }
 
-    /// Collects the slots of the living in a cell.
-    pub(super) fn members(&self, row: usize, column: usize, members: &mut Vec<u32>) {
-        let alive = |slot: &usize| self.bound2[*slot] != DEAD;
-        members.extend(self.slots_in(row, column).filter(alive).map(|slot| slot as u32));
-    }
-
-    /// Tells a source of one node.
-    pub(super) fn tell(&mut self, hit: Hit, hear: impl Fn(Hit, DVec2, &mut S) -> Told) {
-        let Self { places, bound2, sources, news, .. } = self;
-        offer::Part { first: 0, places, bound2, sources }.tell(hit, hear, news);
-        self.settle_news();
+    /// Tells the sources in a cell of the new node that `find` finds nearest to each; to be followed by
+    /// [`settle_news`](Self::settle_news).
+    pub(super) fn tell_cell(
+        &mut self,
+        row: usize,
+        column: usize,
+        find: impl Fn(DVec2) -> Option<Found>,
+        hear: impl Fn(&mut S, Found) -> f64,
+    ) {
+        let Self { places, bound2, sources, cells, news, .. } = self;
+        let mut part = offer::Part { first: 0, places, bound2, sources };
+        let slots = cells.run(row, column, column).chain(cells.newborn_in(row, column));
+        slots.for_each(|slot| {
+            if part.bound2[slot] == DEAD {
+                return;
+            }
+            let Some(found) = find(part.places[slot]) else { return };
+            let (node, distance2) = (found.tip as u32, found.distance2);
+            let hear = |_, _, state: &mut S| Told { bound2: hear(state, found), is_marked: false };
+            part.tell(Hit { slot: slot as u32, node, distance2 }, hear, news);
+        });
     }
 
     /// Takes note of what came of telling.
-    fn settle_news(&mut self) {
+    pub(super) fn settle_news(&mut self) {
         self.arrived.append(&mut self.news.arrived);
         for &id in &self.news.dead {
             self.slots[id as usize] = NONE;

@@ -52,6 +52,8 @@ pub struct Grown {
     pub unreached: Unreached,
     /// Sources that ever were.
     pub sources: usize,
+    /// Living sources, summed over the steps made.
+    pub source_steps: u64,
     /// How many nodes there were after each step made; fewer steps than the blade has when nothing
     /// could change any more.
     pub nodes_after_step: Vec<u32>,
@@ -106,6 +108,7 @@ pub fn grow(
     let pace = (steps / 100).max(1);
     let mut made = 0;
     let mut nodes_after_step = Vec::new();
+    let mut source_steps = 0;
     for step in blade.steps() {
         let frame = blade.frame(step);
         let metric = frame.metric();
@@ -133,6 +136,7 @@ pub fn grow(
         // Seed new sources where the blade has room.
         supply.seed(step, age, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.
+        source_steps += calls.living() as u64;
         calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
@@ -191,7 +195,7 @@ pub fn grow(
     unreached.outside += supply.outside();
     unreached.too_young += supply.unborn();
     let sources = calls.len() + unreached.outside + supply.unborn();
-    Ok(Grown { graph: nodes.into_graph(), unreached, sources, nodes_after_step })
+    Ok(Grown { graph: nodes.into_graph(), unreached, sources, source_steps, nodes_after_step })
 }
 
 /// Turns closed venation into open: what has come to a source meets, and the sources that are left

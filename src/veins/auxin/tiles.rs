@@ -3,17 +3,17 @@
 //!
 //! Without a reach every source acts from the first step on, and asking each in every step whether
 //! one of the new nodes is nearer costs O(sources · new nodes). Most new nodes are far from most
-//! sources: which of them matter is asked first for blocks of some thousand sources, then for tiles
+//! sources: which of them matter is asked first for blocks of some hundred sources, then for tiles
 //! of sixteen, and the few that are left are measured from each.
 
 use glam::DVec2;
 
-use super::field::{DEAD, Field, Hit, Told};
+use super::field::{DEAD, Field};
 use crate::geometry::point_index::PointIndex;
 use crate::growth::Metric;
 
 /// Tiles along the side of a block.
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 
 /// Up to this many new nodes are measured one by one for each block; an index over them pays beyond:
 /// 0.2 µs instead of 1 ns for each.
@@ -44,7 +44,6 @@ pub(super) struct Tiles {
     tips: Vec<Tip>,
     of_block: Vec<Tip>,
     of_tile: Vec<Tip>,
-    members: Vec<u32>,
 }
 
 /// A part of the blade that asks which tips matter to what is in it.
@@ -78,8 +77,11 @@ impl Part {
             .reduce(|a, b| if b.0 < a.0 { b } else { a })?;
         let radius = self.radius(nearest.0.sqrt())?;
         chosen.clear();
-        chosen.extend(tips.iter().filter(|tip| distance2(tip) <= radius * radius));
-        self.drop_the_outdone(nearest.1.stretched, chosen);
+        let matters = |tip: &&Tip| {
+            let tip2 = distance2(tip);
+            tip2 <= radius * radius && self.is_not_outdone(tip, tip2, nearest)
+        };
+        chosen.extend(tips.iter().filter(matters));
         Some(radius)
     }
 
@@ -89,28 +91,23 @@ impl Part {
         chosen.clear();
         index.for_each_within(self.middle, radius, |tip, _| chosen.push(tips[tip as usize]));
         chosen.sort_unstable_by_key(|tip| tip.number);
-        let distance2 = |tip: &&Tip| tip.stretched.distance_squared(self.middle);
-        let nearest = chosen.iter().min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
-        let nearest = nearest.map(|tip| tip.stretched);
-        if let Some(nearest) = nearest {
-            self.drop_the_outdone(nearest, chosen);
-        }
+        let distance2 = |tip: &Tip| tip.stretched.distance_squared(self.middle);
+        let nearest = chosen
+            .iter()
+            .map(|tip| (distance2(tip), *tip))
+            .reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        chosen.retain(|tip| self.is_not_outdone(tip, distance2(tip), (nearest.0, &nearest.1)));
         Some(radius)
     }
 
-    /// Drops the tips than which the one nearest to the middle is nearer to every member: their
-    /// bisector passes by.
-    fn drop_the_outdone(&self, nearest: DVec2, chosen: &mut Vec<Tip>) {
-        if self.bounds_others {
-            return;
-        }
-        let nearest2 = nearest.distance_squared(self.middle);
-        chosen.retain(|tip| {
-            let tip2 = tip.stretched.distance_squared(self.middle);
-            let apart = tip.stretched.distance(nearest);
-            // Less what rounding may do.
-            tip2 * (1.0 - 1e-9) - nearest2 <= 2.0 * self.half_diagonal * apart
-        });
+    /// Whether a tip may be nearer to some member than the one nearest to the middle is: else their
+    /// bisector passes the members by.
+    fn is_not_outdone(&self, tip: &Tip, tip2: f64, (nearest2, nearest): (f64, &Tip)) -> bool {
+        // Less what rounding may do.
+        let farther = tip2 * (1.0 - 1e-9) - nearest2;
+        let apart2 = tip.stretched.distance_squared(nearest.stretched);
+        let diagonal2 = self.half_diagonal * self.half_diagonal;
+        self.bounds_others || farther <= 0.0 || farther * farther <= 4.0 * diagonal2 * apart2
     }
 }
 
@@ -129,7 +126,7 @@ impl Tiles {
         if fresh.is_empty() {
             return;
         }
-        let Self { tips, of_block, of_tile, members } = self;
+        let Self { tips, of_block, of_tile } = self;
         tips.clear();
         let tip = |(number, &at): (usize, &DVec2)| Tip {
             at,
@@ -183,22 +180,11 @@ impl Tiles {
                 let Some(radius) = tile.choose(of_block, of_tile) else { continue };
                 // A tip that is not among the chosen lies at least this far from every member.
                 let beyond2 = (radius - tile.half_diagonal).max(0.0).powi(2);
-                members.clear();
-                field.members(row, column, members);
-                for &slot in members.iter() {
-                    let Some(found) = nearest(of_tile, field.place(slot as usize), beyond2, metric)
-                    else {
-                        continue;
-                    };
-                    let node = found.tip as u32;
-                    let hit = Hit { slot, node, distance2: found.distance2 };
-                    field.tell(hit, |_, _, state| Told {
-                        bound2: hear(state, found),
-                        is_marked: false,
-                    });
-                }
+                let find = |p: DVec2| nearest(of_tile, p, beyond2, metric);
+                field.tell_cell(row, column, find, &hear);
             }
         }
+        field.settle_news();
     }
 }
 

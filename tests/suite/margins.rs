@@ -150,7 +150,7 @@ fn vary_on_the_command_line_is_vary_in_the_file_and_in_set() {
 #[test]
 fn secondaries_end_in_the_teeth() {
     for name in ["birch", "chestnut"] {
-        let mut document = document(name, &["veins.spawn_rate=1", "growth.type=none"]);
+        let mut document = document(name, &["veins.spawn_rate=1", "growth.start_step=1"]);
         document.set("growth.total_steps=2", "test").expect("a setting");
         for seed in [1, 2] {
             let spec = document.resolve(Seed(seed)).expect("it resolves");

@@ -183,11 +183,16 @@ impl Cutter<'_> {
                 self.cut(&flank, &tooth.flanks[k], Rank { order: order + 1, lean, ..rank })
             };
             if order > 1 {
+                // Straight beneath, or evenly on the way where still smaller teeth stand on the flank.
                 let last = nodes.len() - 1;
+                let even = |i: usize| {
+                    let share = i as f64 / last as f64;
+                    (stations[k] + (stations[k + 1] - stations[k]) * share) * width
+                };
+                let direct = nodes.len() == line.len();
                 for (i, node) in nodes.iter_mut().enumerate() {
-                    let share =
-                        stations[k] + (stations[k + 1] - stations[k]) * i as f64 / last as f64;
-                    node.bare = frame.run.at(frame.from + share * width);
+                    let along = if direct { line[i].x.clamp(0.0, width) } else { even(i) };
+                    node.bare = frame.run.at(frame.from + along);
                 }
             }
             nodes

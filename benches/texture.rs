@@ -8,9 +8,10 @@ mod sample_leaf;
 
 use venation::observer::Silent;
 use venation::seed::Seed;
+use venation::texture::damage::DamageSpec;
 use venation::texture::map::{MapKind, MapSet};
 use venation::texture::petiole::PetioleSpec;
-use venation::texture::pigment::ColourSpec;
+use venation::texture::pigment::{ColourSpec, StateSpec};
 use venation::texture::relief::ReliefSpec;
 use venation::texture::{Paint, TextureSpec, paint};
 
@@ -24,13 +25,16 @@ fn both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
     let veins = sample_leaf::veins(&margin);
     let texture = TextureSpec { size_px, ..TextureSpec::default() };
     let (petiole, colour) = (PetioleSpec::default(), ColourSpec::default());
-    let relief = ReliefSpec::default();
+    let (relief, state) = (ReliefSpec::default(), StateSpec::default());
+    let damage = DamageSpec::default();
     bencher.bench(|| {
         let settings = Paint {
             texture: &texture,
             petiole: &petiole,
             colour: &colour,
             relief: &relief,
+            state: &state,
+            damage: &damage,
             maps: MapSet::of(&[
                 MapKind::BaseColour,
                 MapKind::Height,

@@ -59,6 +59,8 @@ pub fn paint(
         texture: &spec.texture,
         petiole: &spec.petiole,
         colour: &spec.colour,
+        state: &spec.state,
+        damage: &spec.damage,
         relief: &spec.relief,
         maps: MapSet::of(&MapKind::list(&spec.output.maps)?),
         // A tenth of the auxin spawn rate (Foster, appendix B.3).

@@ -22,12 +22,18 @@ pub enum Stage {
     Margin,
     /// How the guided veins vary.
     Guides,
+    /// How the fine veins bow.
+    Bows,
     /// Where the particles start.
     Particles,
     /// Where the speckles lie.
     Speckles,
     /// The fine structure of the tissue between the veins.
     Tissue,
+    /// What has hurt the leaf.
+    Damage,
+    /// Where a leaf turns first.
+    Senescence,
     /// The bend of the petiole.
     Petiole,
     /// Values dealt anew, for comparison with the order they are in.
@@ -40,9 +46,12 @@ impl Stage {
             Self::AuxinSources => "stage/auxin-sources",
             Self::Margin => "stage/margin",
             Self::Guides => "stage/guides",
+            Self::Bows => "stage/bows",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
+            Self::Damage => "stage/damage",
+            Self::Senescence => "stage/senescence",
             Self::Petiole => "stage/petiole",
             Self::Shuffle => "stage/shuffle",
         }

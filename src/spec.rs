@@ -4,8 +4,9 @@ use crate::growth::GrowthSpec;
 use crate::margin::MarginSpec;
 use crate::parameter::{Kind, Parameters, parameters};
 use crate::texture::TextureSpec;
+use crate::texture::damage::DamageSpec;
 use crate::texture::petiole::PetioleSpec;
-use crate::texture::pigment::ColourSpec;
+use crate::texture::pigment::{ColourSpec, StateSpec};
 use crate::texture::relief::ReliefSpec;
 use crate::veins::VeinSpec;
 
@@ -13,7 +14,8 @@ parameters! {
     /// What is written of a leaf.
     pub struct OutputSpec {
         /// Maps to write of each side: some of basecolor, opacity, normal, height, roughness,
-        /// ambientocclusion, orm, translucency, thickness, veinmask, veinorder, bump; or all, or none.
+        /// ambientocclusion, orm, translucency, thickness, veinmask, veinorder, bump, preview,
+        /// enhancement; or all, or none.
         maps: text(
             "basecolor,opacity,normal,height,roughness,ambientocclusion,orm,translucency,thickness,\
              veinmask,veinorder"
@@ -40,6 +42,10 @@ parameters! {
         petiole: group(PetioleSpec, PetioleSpec::default()),
         /// Pigments.
         colour: group(ColourSpec, ColourSpec::default()),
+        /// Season, maturity and health: colour and tissue only.
+        state: group(StateSpec, StateSpec::default()),
+        /// What has happened to the leaf.
+        damage: group(DamageSpec, DamageSpec::default()),
         /// Heights and shine.
         relief: group(ReliefSpec, ReliefSpec::default()),
         /// Size of the pictures.

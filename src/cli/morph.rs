@@ -255,8 +255,10 @@ fn write(args: &Args, out: &Path, frames: &[Frame], seed: Seed) -> Result<Vec<St
             let folder = folder(i);
             let title = format!("{}, frame {} of {}", frame.spec.title, i + 1, frames.len());
             let drawing = match &frame.painted {
-                Some((_, _, venation)) => svg::svg(&title, &frame.margin, venation, &common),
-                None => svg::outline_svg(&title, &frame.margin, &common),
+                Some((_, _, venation)) => {
+                    svg::svg(&title, &frame.margin, Some(venation), &common, &[])
+                }
+                None => svg::svg(&title, &frame.margin, None, &common, &[]),
             };
             let caption = image::Caption {
                 pixels_per_mm: Some(common.pixels_per_mm(size)),

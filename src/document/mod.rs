@@ -17,6 +17,7 @@ mod write;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use crate::margin::MarginSpec;
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
 pub use value::Value;
@@ -118,6 +119,22 @@ impl Document {
         self.entries.extend(over.entries);
         self.seed = over.seed.or(self.seed);
         self.vary = over.vary.or(self.vary);
+    }
+
+    /// Gives the whole outline anew: forgets every `margin.` key that was given and sets all of them.
+    ///
+    /// # Panics
+    ///
+    /// If the lists of the specification run past what a document can hold; fitted ones never do.
+    pub fn set_margin(&mut self, margin: &MarginSpec, origin: &str) {
+        const GROUP: &str = "margin.";
+        self.entries.retain(|key, _| !key.starts_with(GROUP));
+        let spec = LeafSpec { margin: margin.clone(), ..LeafSpec::default() };
+        for (key, entry) in draw::document_of(&spec, 0).entries {
+            if key.starts_with(GROUP) {
+                self.entries.insert(key, Entry { value: entry.value, origin: origin.to_owned() });
+            }
+        }
     }
 
     /// Forgets the records of a list: those that follow are all of it.

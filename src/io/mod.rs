@@ -5,6 +5,7 @@
 //! will write.
 
 pub mod animation;
+pub mod fit;
 pub mod graph;
 pub mod graphml;
 pub mod image;

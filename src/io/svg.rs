@@ -23,12 +23,37 @@ const WIDTH_STEP: f64 = 0.1;
 /// Width of the outline (mm): a hairline that still shows on screen.
 const OUTLINE_WIDTH_MM: f64 = 0.1;
 
-/// The drawing of a leaf.
+/// The drawing of a leaf, or of its outline alone; `rings` outline what is left of a damaged blade.
 #[must_use]
-pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFrame) -> String {
-    let mut svg = head(title, margin, frame);
+pub fn svg(
+    title: &str,
+    margin: &Margin,
+    venation: Option<&Venation>,
+    frame: &TextureFrame,
+    rings: &[Vec<DVec2>],
+) -> String {
     let page = Page { frame };
-    let pieces = pieces(venation);
+    let side = number(frame.side_mm);
+    let mut svg = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <svg xmlns=\"http://www.w3.org/2000/svg\" \
+         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+         width=\"{side}mm\" height=\"{side}mm\" viewBox=\"0 0 {side} {side}\" fill=\"none\" \
+         stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>\n",
+        escaped(title)
+    );
+    open_layer(&mut svg, 1, "outline", &format!(" stroke-width=\"{OUTLINE_WIDTH_MM}\""));
+    // Of a damaged blade what is left, gaps as rings of their own.
+    let whole = [margin.outline().to_vec()];
+    for ring in if rings.is_empty() { &whole[..] } else { rings } {
+        let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(ring));
+    }
+    for cut in margin.cuts() {
+        let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
+    }
+    svg.push_str("</g>\n");
+
+    let pieces = venation.map(pieces).unwrap_or_default();
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     for order in 1..=orders {
         open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");
@@ -42,34 +67,6 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
         svg.push_str("</g>\n");
     }
     svg.push_str("</svg>\n");
-    svg
-}
-
-/// The drawing of an outline alone.
-#[must_use]
-pub fn outline_svg(title: &str, margin: &Margin, frame: &TextureFrame) -> String {
-    head(title, margin, frame) + "</svg>\n"
-}
-
-/// The head of a drawing and its layer of the outline.
-fn head(title: &str, margin: &Margin, frame: &TextureFrame) -> String {
-    let page = Page { frame };
-    let side = number(frame.side_mm);
-    let mut svg = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <svg xmlns=\"http://www.w3.org/2000/svg\" \
-         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
-         width=\"{side}mm\" height=\"{side}mm\" viewBox=\"0 0 {side} {side}\" fill=\"none\" \
-         stroke-linecap=\"round\" stroke-linejoin=\"round\">\n<title>{}</title>\n",
-        escaped(title)
-    );
-    open_layer(&mut svg, 1, "outline", &format!(" stroke-width=\"{OUTLINE_WIDTH_MM}\""));
-    let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(margin.outline()));
-    for cut in margin.cuts() {
-        let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
-    }
-    svg.push_str("</g>\n");
-
     svg
 }
 

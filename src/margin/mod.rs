@@ -9,6 +9,7 @@
 
 pub mod curve;
 pub mod detail;
+pub mod fit;
 pub mod instances;
 mod landmarks;
 pub mod lobes;
@@ -21,6 +22,7 @@ pub mod sketch;
 
 use glam::DVec2;
 
+use crate::geometry::segments::SegmentIndex;
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
 use crate::seed::Seed;
@@ -257,6 +259,13 @@ impl Margin {
     #[must_use]
     pub fn cuts(&self) -> &[Vec<DVec2>] {
         &self.cuts
+    }
+
+    /// The lines that no vein crosses: the outline and the cuts.
+    #[must_use]
+    pub fn lines(&self) -> SegmentIndex {
+        let cuts = self.cuts.iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
+        SegmentIndex::new(polygon::edges(&self.outline).chain(cuts).collect())
     }
 
     /// What stands on the margin (lobe tips, valleys, teeth), in the order of the vertices. Empty

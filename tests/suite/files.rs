@@ -125,9 +125,20 @@ fn textures(margin: &Margin) -> TextureSet {
         vein_mask: grid(|i| pixel(i, salt + 10)),
         vein_order: grid(|i| (i % 6) as u8),
         bump: grid(|i| pixel(i, salt + 5)),
+        preview: Grid::filled(0, 0, [0; 3]),
+        enhancement: Grid::filled(0, 0, [0; 3]),
     };
     let (front, back) = (side(1), side(2));
-    TextureSet { frame, front, back, height_range_mm: 0.75, thickness_range_mm: 1.5, petiole_end }
+    TextureSet {
+        frame,
+        front,
+        back,
+        height_range_mm: 0.75,
+        thickness_range_mm: 1.5,
+        petiole_end,
+        albedo: venation::texture::pigment::Albedo::Total,
+        rings: Vec::new(),
+    }
 }
 
 fn grid<T>(value: impl FnMut(usize) -> T) -> Grid<T> {

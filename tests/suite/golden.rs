@@ -207,12 +207,26 @@ fn golden_growth_types() {
     let panels: Vec<Panel> = venation::growth::GrowthType::ALL
         .iter()
         .map(|growth| {
-            let settings = [&format!("growth.type={growth}")[..], "growth.start_step=200"];
+            // What growth alone makes of it, as in the papers.
+            let settings = [
+                &format!("growth.type={growth}")[..],
+                "growth.start_step=200",
+                "veins.guides.primary=none",
+                "veins.algorithm=auxin-open",
+            ];
             let leaf = leaf(&document("lilac", &settings), 1, 512);
             panel(leaf.textures.back.base_colour, growth.word())
         })
         .collect();
     compare("readme_growth", &sheet("growth types, seen from below", &panels, 5, 384));
+}
+
+#[test]
+fn golden_veins_from_growth_alone() {
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "beech", "--by", "emergence", "--size", "768", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_emergence", &read(&folder.path().join("s.png")).expect("the sheet"));
 }
 
 #[test]

@@ -163,8 +163,26 @@ fn golden_morphs_of_figures_7_5_to_7_11() {
     ]);
     let oval = unilobed(&["waist_x=0.25"]);
     let broad = unilobed(&["waist_x=0.55", "base_angle_deg=85", "waist_y=0.4"]);
-    let three = leaf(&["kind=lobed", "lobing.count=3"]);
-    let seven = leaf(&["kind=lobed", "lobing.count=7"]);
+    let three = leaf(&[
+        "kind=lobed",
+        "lobing.count=3",
+        "lobing.right.first_angle_deg=62",
+        "lobing.left.first_angle_deg=62",
+        "lobing.right.first_length=0.75",
+        "lobing.left.first_length=0.75",
+        "lobing.lower.waist_x=0.2",
+        "lobing.upper.waist_x=0.2",
+    ]);
+    let seven = leaf(&[
+        "kind=lobed",
+        "lobing.count=7",
+        "lobing.right.first_angle_deg=118",
+        "lobing.left.first_angle_deg=118",
+        "lobing.right.last_angle_deg=40",
+        "lobing.left.last_angle_deg=40",
+        "lobing.lower.waist_x=0.16",
+        "lobing.upper.waist_x=0.16",
+    ]);
     let tails = |side: &str| {
         let wanted = [
             format!("{side}.base_angle_deg=150"),

@@ -166,7 +166,7 @@ impl Cutter<'_> {
         let tip_foot = tip_at.clamp(0.15, 0.85);
         let stations = [0.0, tip_foot, 1.0];
         let mut flanks: [Vec<Node>; 2] = [0, 1].map(|k| {
-            let line = self.flank(k, corners[k], corners[k + 1]);
+            let line = self.flank(k, corners[k], corners[k + 1], frame.sag());
             let last = line.len() - 1;
             let foot = |i: usize| {
                 let share = stations[k] + (stations[k + 1] - stations[k]) * i as f64 / last as f64;
@@ -183,11 +183,16 @@ impl Cutter<'_> {
                 self.cut(&flank, &tooth.flanks[k], Rank { order: order + 1, lean, ..rank })
             };
             if order > 1 {
+                // Straight beneath, or evenly on the way where still smaller teeth stand on the flank.
                 let last = nodes.len() - 1;
+                let even = |i: usize| {
+                    let share = i as f64 / last as f64;
+                    (stations[k] + (stations[k + 1] - stations[k]) * share) * width
+                };
+                let direct = nodes.len() == line.len();
                 for (i, node) in nodes.iter_mut().enumerate() {
-                    let share =
-                        stations[k] + (stations[k + 1] - stations[k]) * i as f64 / last as f64;
-                    node.bare = frame.run.at(frame.from + share * width);
+                    let along = if direct { line[i].x.clamp(0.0, width) } else { even(i) };
+                    node.bare = frame.run.at(frame.from + along);
                 }
             }
             nodes
@@ -217,14 +222,15 @@ impl Cutter<'_> {
         nodes.extend_from_slice(upper);
     }
 
-    /// A flank in the frame of its tooth (mm along the edge, mm out), ends included.
-    fn flank(&self, k: usize, from: DVec2, to: DVec2) -> Vec<DVec2> {
+    /// A flank in the frame of its tooth (mm along the edge, mm out), ends included; the edge bends by
+    /// `sag` beneath it.
+    fn flank(&self, k: usize, from: DVec2, to: DVec2, sag: f64) -> Vec<DVec2> {
         let along = to - from;
         let out = along.perp();
         let (bow, flexure) = (self.form.bow[k] * 4.0 * BOW, self.form.flexure[k] * FLEXURE);
         // Concave at the sinus and convex at the tip is flexuous, on both flanks.
         let flexure = if k == 0 { -flexure } else { flexure };
-        let bulge = along.length() * (bow.abs() + 3.0 * flexure.abs() + 0.05);
+        let bulge = along.length() * (bow.abs() + 3.0 * flexure.abs() + 0.05) + 2.0 * sag;
         let pieces = (bulge / (2.0 * self.tolerance)).sqrt().ceil().clamp(2.0, 48.0) as usize;
         (0..=pieces)
             .map(|i| {
@@ -339,6 +345,12 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
+    /// How far the edge bends away from a chord beneath the tooth (mm).
+    fn sag(&self) -> f64 {
+        let at = |share: f64| self.run.at(self.from + share * self.width);
+        at(0.5).distance(at(0.0).midpoint(at(1.0)))
+    }
+
     /// A point of the tooth (mm along the edge from its beginning, mm out) in leaf space.
     fn place(&self, p: DVec2) -> DVec2 {
         let s = self.from + p.x;

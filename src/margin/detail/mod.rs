@@ -24,7 +24,7 @@ mod tests;
 use glam::DVec2;
 
 use super::lobes::{LobeRecord, LobeSide};
-use super::{Landmark, Margin, MarginError, MarginSpec, Outline, curve};
+use super::{Landmark, MarginError, MarginSpec, Outline, curve};
 use crate::geometry::polygon;
 use crate::seed::{Seed, Stage};
 use cut::{Cutter, Node};
@@ -211,7 +211,7 @@ impl Detailed {
         let mut whole = fine.clone();
         let mut points = self.points(&fine, &whole);
         for step in 0..=STEPS {
-            let crossings = crossings(&points);
+            let crossings = self.crossings(&points);
             if crossings.is_empty() {
                 break;
             }
@@ -261,6 +261,30 @@ impl Detailed {
         Ok(Outline { points, apex: self.apex, cuts: plain.cuts.clone(), landmarks })
     }
 
+    /// The pairs of vertices whose edges (to the next vertex) touch, once vertices that a margin does
+    /// not tell apart are merged.
+    fn crossings(&self, points: &[DVec2]) -> Vec<(usize, usize)> {
+        let marks = self.nodes.iter().enumerate();
+        let landmarks = marks
+            .filter_map(|(vertex, node)| Some(Landmark { vertex, kind: node.mark? }))
+            .collect();
+        let outline =
+            Outline { points: points.to_vec(), apex: self.apex, cuts: Vec::new(), landmarks };
+        let spaced = outline.spaced().points;
+        // Those that stay are in the order they had.
+        let mut next = 0;
+        let kept: Vec<usize> = spaced
+            .iter()
+            .map(|p| {
+                while next + 1 < points.len() && points[next] != *p {
+                    next += 1;
+                }
+                next
+            })
+            .collect();
+        polygon::crossings(&spaced).into_iter().map(|(i, j)| (kept[i], kept[j])).collect()
+    }
+
     fn points(&self, fine: &[f64], whole: &[f64]) -> Vec<DVec2> {
         let share = |shares: &[f64], part: f64| {
             let (i, t) = (part.floor() as usize, part.fract());
@@ -277,22 +301,6 @@ impl Detailed {
         }
         points
     }
-}
-
-/// The pairs of vertices whose edges (to the next vertex) touch, but for vertices too close to the one
-/// before to be told from it.
-fn crossings(points: &[DVec2]) -> Vec<(usize, usize)> {
-    let mut kept: Vec<usize> = vec![0];
-    for i in 1..points.len() {
-        if points[i].distance(points[kept[kept.len() - 1]]) >= Margin::MIN_EDGE_MM {
-            kept.push(i);
-        }
-    }
-    while kept.len() > 1 && points[kept[kept.len() - 1]].distance(points[0]) < Margin::MIN_EDGE_MM {
-        kept.pop();
-    }
-    let spaced: Vec<DVec2> = kept.iter().map(|&i| points[i]).collect();
-    polygon::crossings(&spaced).into_iter().map(|(i, j)| (kept[i], kept[j])).collect()
 }
 
 fn nearest(nodes: &[Node], p: DVec2) -> usize {

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use venation::document::Document;
 use venation::io;
+use venation::margin::shapes;
 use venation::observer::Silent;
 use venation::pipeline::{self, Grown};
 use venation::raster::montage::{self, Layout, Panel};
@@ -26,6 +27,7 @@ use cases::{By, Case};
 Examples:
   venation compare beech -o growth.png
   venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
+  venation compare beech --by shape -o shapes.png            every shape of a unilobed blade
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
 
@@ -128,6 +130,13 @@ fn panel(
         let side = (spec.texture.size_px as usize).min(LINES_PX);
         let notes = vec![format!("{} particles", grown.venation.sources())];
         return Ok(Panel { picture: trails::picture(grown, side), label, notes });
+    }
+    if let Case::Shape(index) = case {
+        let shape = shapes::all().swap_remove(index);
+        let kind = shape.kind.to_string();
+        let notes = if kind == shape.name { Vec::new() } else { vec![kind] };
+        let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
+        return Ok(Panel { picture: textures.front.base_colour, label, notes });
     }
     let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
     let notes = vec![nodes, format!("sinuosity {:.3}", metrics.sinuosity)];

@@ -2,7 +2,7 @@
 
 use venation::error::Error;
 use venation::growth::GrowthType;
-use venation::margin;
+use venation::margin::{self, shapes};
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
 use venation::veins::particles::patterns::Pattern;
@@ -16,6 +16,8 @@ pub(super) enum By {
     Scatter,
     /// The vein algorithms.
     Algorithm,
+    /// Shapes of unilobed blades: the fifty types and twelve names (Garg 2011, tables 4.2 and 4.3).
+    Shape,
 }
 
 /// What one panel shows.
@@ -24,10 +26,15 @@ pub(super) enum Case {
     Growth(GrowthType),
     Scatter(Pattern, u64),
     Algorithm(Algorithm),
+    /// By its place among all shapes.
+    Shape(usize),
 }
 
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
 const SCATTERS: [(u64, u64); 4] = [(3, 1378), (5, 500), (7, 254), (10, 125)];
+
+/// Sixty leaves on one sheet are shown no larger than this (pixels).
+const SHAPE_PX: u64 = 256;
 
 /// The area of the paper's ivy (pixels²): its counts times its spacings².
 const IVY_PX2: f64 = 12_450.0;
@@ -43,6 +50,7 @@ impl By {
             Self::Growth => "growth",
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
+            Self::Shape => "shape",
         }
     }
 
@@ -51,6 +59,7 @@ impl By {
             Self::Growth => "growth types",
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
+            Self::Shape => "shapes of unilobed blades: waist-base-apex, and botanists' names",
         }
     }
 
@@ -62,6 +71,7 @@ impl By {
                 .flat_map(|&(px, _)| Pattern::ALL.iter().map(move |&p| Case::Scatter(p, px)))
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
+            Self::Shape => (0..shapes::all().len()).map(Case::Shape).collect(),
         }
     }
 
@@ -70,6 +80,8 @@ impl By {
         match self {
             Self::Scatter => Pattern::ALL.len(),
             Self::Growth | Self::Algorithm => self.cases().len(),
+            // The types of one waist fill two rows.
+            Self::Shape => 8,
         }
     }
 }
@@ -80,6 +92,7 @@ impl Case {
             Self::Growth(growth) => growth.to_string(),
             Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
             Self::Algorithm(algorithm) => algorithm.to_string(),
+            Self::Shape(index) => shapes::all().swap_remove(index).name,
         }
     }
 
@@ -88,6 +101,10 @@ impl Case {
         match self {
             Self::Growth(growth) => spec.growth.r#type = growth,
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
+            Self::Shape(index) => {
+                spec.margin = spec.margin.shaped(&shapes::all()[index]);
+                spec.texture.size_px = spec.texture.size_px.min(SHAPE_PX);
+            }
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
                 let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();

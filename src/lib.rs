@@ -51,7 +51,7 @@
 //! use venation::seed::Seed;
 //! use venation::veins::{self, VeinSpec};
 //!
-//! let margin = margin::build(&MarginSpec { length_mm: 40.0, ..MarginSpec::default() })?;
+//! let margin = margin::build(&MarginSpec { length_mm: 40.0, ..MarginSpec::default() }, Seed(1))?;
 //! let blade = GrowingBlade::new(margin, &GrowthSpec::default())?;
 //! let venation = veins::grow(&VeinSpec::default(), &blade, Seed(1), &mut Silent)?;
 //! let trunk = venation.radii()[0];

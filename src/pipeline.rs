@@ -38,7 +38,7 @@ pub struct Leaf {
 ///
 /// The first stage's that fails.
 pub fn grow(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<Grown, Error> {
-    let margin = margin::build(&spec.margin)?;
+    let margin = margin::build(&spec.margin, seed)?;
     let blade = GrowingBlade::new(margin, &spec.growth)?;
     let venation = veins::grow(&spec.veins, &blade, seed, observer)?;
     Ok(Grown { margin: blade.finished().clone(), venation })
@@ -59,6 +59,8 @@ pub fn paint(
         texture: &spec.texture,
         petiole: &spec.petiole,
         colour: &spec.colour,
+        state: &spec.state,
+        damage: &spec.damage,
         relief: &spec.relief,
         maps: MapSet::of(&MapKind::list(&spec.output.maps)?),
         // A tenth of the auxin spawn rate (Foster, appendix B.3).

@@ -40,7 +40,7 @@ presets! {
     "hedera-helix", "ivy", "five pointed lobes, very dark, pale veins";
     "magnolia-grandiflora", "magnolia", "long elliptic, thick and glossy; rusty felt below";
     "poa-pratensis", "grass", "a long narrow blade, veins side by side";
-    "populus-tremula", "aspen", "nearly round, on a long thin petiole; autumn yellow";
+    "populus-tremula", "aspen", "nearly round, on a long thin petiole; deeper green along the veins";
     "pyrus-communis", "pear", "ovate, dark and shiny, a dense fine net";
     "quercus-robur", "oak", "rounded lobes, two ears at the base";
     "salix-alba", "willow", "narrow lance, grey-green; silvery below";

@@ -18,14 +18,22 @@ pub struct Seed(pub u64);
 pub enum Stage {
     /// Where the auxin sources fall.
     AuxinSources,
+    /// What is irregular about the margin: teeth, waves, roughness.
+    Margin,
     /// How the guided veins vary.
     Guides,
+    /// How the fine veins bow.
+    Bows,
     /// Where the particles start.
     Particles,
     /// Where the speckles lie.
     Speckles,
     /// The fine structure of the tissue between the veins.
     Tissue,
+    /// What has hurt the leaf.
+    Damage,
+    /// Where a leaf turns first.
+    Senescence,
     /// The bend of the petiole.
     Petiole,
     /// Values dealt anew, for comparison with the order they are in.
@@ -36,10 +44,14 @@ impl Stage {
     const fn name(self) -> &'static str {
         match self {
             Self::AuxinSources => "stage/auxin-sources",
+            Self::Margin => "stage/margin",
             Self::Guides => "stage/guides",
+            Self::Bows => "stage/bows",
             Self::Particles => "stage/particles",
             Self::Speckles => "stage/speckles",
             Self::Tissue => "stage/tissue",
+            Self::Damage => "stage/damage",
+            Self::Senescence => "stage/senescence",
             Self::Petiole => "stage/petiole",
             Self::Shuffle => "stage/shuffle",
         }

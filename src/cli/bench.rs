@@ -169,7 +169,7 @@ pub(crate) fn run(args: &Args, out: &mut dyn Write) -> Result<(), Failure> {
 fn beech() -> Result<Margin, Failure> {
     let preset = presets::find("beech").expect("beech comes with venation");
     let spec = preset.document()?.resolve(Seed(1))?;
-    Ok(margin::build(&spec.margin).map_err(venation::error::Error::from)?)
+    Ok(margin::build(&spec.margin, Seed(1)).map_err(venation::error::Error::from)?)
 }
 
 /// The run of median time.

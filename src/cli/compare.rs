@@ -1,7 +1,8 @@
-//! `venation compare`: growth types, scatter patterns or vein algorithms side by side, labelled, with
+//! `venation compare`: growth types, scatter patterns, vein algorithms or what orders veins, side by side, labelled, with
 //! their measures.
 
 mod cases;
+mod season;
 mod trails;
 
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::texture::map::MapKind;
 use venation::veins::metrics::VeinMetrics;
+use venation::veins::metrics::hierarchy::Hierarchy;
 
 use super::leaf_args::{self, LeafArgs};
 use super::{Context, Failure, seeds};
@@ -29,13 +31,17 @@ Examples:
   venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
   venation compare beech --by shape -o shapes.png            every shape of a unilobed blade
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
+  venation compare beech --by emergence -o emergence.png     straight, symmetric, ordered: one by one
   venation compare linden --seeds 1-20 --csv growth.csv      measures over 20 seeds, no picture
+  venation compare maple --by season -o year.png             spring to litter: front, back, against the light
+  venation compare maple --by season --frames 60 -o film.png an animated PNG; a folder of pictures without .png
 
 --by growth grows open venation without guided veins, which would look alike under every growth type;
 --set veins.guides.primary=pinnate and --set veins.algorithm=auxin-closed keep them.
 
 Measures: nodes; tips (free vein ends); sinuosity (path over chord of the primary and secondary veins,
-1 is straight); tip_step (share of the steps after which a vein is within 5 % of the apex).")]
+1 is straight; of the midrib alone; of its side veins); secondaries by side and how their distances
+vary (deviation over mean); tip_step (share of the steps after which a vein is within 5 % of the apex).")]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
@@ -54,6 +60,10 @@ pub(crate) struct Args {
     /// The measures of every leaf as CSV.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
+    /// `--by season`: so many pictures of the season from 0 to 1, instead of a sheet; an animated PNG
+    /// where `-o` ends in .png, else a folder of pictures.
+    #[arg(long, value_name = "N", requires = "out", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    frames: Option<u32>,
     /// Overwrite files of an earlier run.
     #[arg(long)]
     force: bool,
@@ -64,6 +74,7 @@ struct Cell {
     case: Case,
     seed: u64,
     metrics: VeinMetrics,
+    hierarchy: Option<Hierarchy>,
     panel: Option<Panel>,
 }
 
@@ -79,6 +90,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         }
     }
     let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
+    if args.by == By::Season {
+        return through_the_year(args, &document, seeds[0], context);
+    }
+    if args.frames.is_some() {
+        return Err(Failure::Input("--frames: only --by season makes a film".into()));
+    }
     super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
     let cases = args.by.cases();
     let work: Vec<(Case, u64)> =
@@ -103,6 +120,27 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     Ok(())
 }
 
+fn through_the_year(
+    args: &Args,
+    document: &Document,
+    seed: u64,
+    context: &mut Context<'_>,
+) -> Result<(), Failure> {
+    if let (Some(frames), Some(out)) = (args.frames, &args.out) {
+        let year = season::Year::new(document, seed)?;
+        return year.film(frames as usize, out, args.force, context);
+    }
+    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
+    let (sheet, table) = season::Year::new(document, seed)?.sheet()?;
+    for (path, bytes) in [(&args.out, sheet), (&args.csv, table.into_bytes())] {
+        if let Some(path) = path {
+            super::save(path, bytes)?;
+            writeln!(context.stdout, "{}", path.display())?;
+        }
+    }
+    Ok(())
+}
+
 /// Panels are no larger than this (pixels), nor those of lines than [`LINES_PX`].
 const PANEL_PX: usize = 720;
 const LINES_PX: usize = 420;
@@ -113,8 +151,9 @@ fn cell(document: &Document, case: Case, seed: u64, shown: bool) -> Result<Cell,
     case.apply(&mut spec)?;
     let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
     let metrics = VeinMetrics::of(&grown.venation, &grown.margin);
+    let hierarchy = Hierarchy::of(&grown.venation, &grown.margin);
     let panel = shown.then(|| panel(case, &spec, &grown, &metrics, seed)).transpose()?;
-    Ok(Cell { case, seed, metrics, panel })
+    Ok(Cell { case, seed, metrics, hierarchy, panel })
 }
 
 fn panel(
@@ -138,9 +177,22 @@ fn panel(
         let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
         return Ok(Panel { picture: textures.front.base_colour, label, notes });
     }
-    let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
+    // Veins show best from below.
+    let picture = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?.back.base_colour;
+    if let Case::Emergence(_) = case {
+        let Some(found) = Hierarchy::of(&grown.venation, &grown.margin) else {
+            return Err(Failure::Unexpected("no midrib to measure".into()));
+        };
+        let [right, left] = found.secondaries;
+        let notes = vec![
+            format!("midrib {:.3}", found.midrib_sinuosity),
+            format!("{left} left, {right} right"),
+            format!("spacing varies by {:.2}", found.spacing_variation),
+        ];
+        return Ok(Panel { picture, label, notes });
+    }
     let notes = vec![nodes, format!("sinuosity {:.3}", metrics.sinuosity)];
-    Ok(Panel { picture: textures.front.base_colour, label, notes })
+    Ok(Panel { picture, label, notes })
 }
 
 fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
@@ -155,13 +207,14 @@ fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
 
 fn table(by: By, cells: &[Cell]) -> String {
     let mut text = format!(
-        "{},seed,nodes,tips,sinuosity,vein_length_mm,tip_step,unreached_sources\n",
+        "{},seed,nodes,tips,sinuosity,vein_length_mm,tip_step,unreached_sources,midrib_sinuosity,\
+         secondaries_right,secondaries_left,secondary_sinuosity,spacing_variation\n",
         by.word()
     );
     for cell in cells {
         let m = &cell.metrics;
         text += &format!(
-            "{},{},{},{},{:.5},{:.2},{:.4},{}\n",
+            "{},{},{},{},{:.5},{:.2},{:.4},{},{}\n",
             cell.case.label(),
             cell.seed,
             m.nodes,
@@ -169,7 +222,15 @@ fn table(by: By, cells: &[Cell]) -> String {
             m.sinuosity,
             m.length_mm,
             m.apex_reached_at,
-            m.unreached_sources
+            m.unreached_sources,
+            cell.hierarchy.map_or_else(
+                || ",,,,".to_owned(),
+                |h| {
+                    let [right, left] = h.secondaries;
+                    let (rib, side) = (h.midrib_sinuosity, h.secondary_sinuosity);
+                    format!("{rib:.5},{right},{left},{side:.5},{:.4}", h.spacing_variation)
+                }
+            )
         );
     }
     text
@@ -177,6 +238,9 @@ fn table(by: By, cells: &[Cell]) -> String {
 
 /// Means over the seeds, for the person.
 fn summary(by: By, cells: &[Cell]) -> String {
+    if by == By::Emergence {
+        return hierarchies(cells);
+    }
     let width = by.cases().iter().map(|case| case.label().len() + 1).fold(12, usize::max);
     let mut text = format!(
         "{:width$} {:>7} {:>7} {:>9} {:>9}\n",
@@ -198,6 +262,34 @@ fn summary(by: By, cells: &[Cell]) -> String {
             mean(|m| m.tips as f64),
             mean(|m| m.sinuosity),
             mean(|m| 100.0 * m.apex_reached_at)
+        );
+    }
+    text
+}
+
+/// The same for what stands out in a hierarchy of veins.
+fn hierarchies(cells: &[Cell]) -> String {
+    let mut text = format!(
+        "{:16} {:>7} {:>11} {:>11} {:>15} {:>8}\n",
+        "emergence", "midrib", "secondaries", "difference", "their sinuosity", "spacing"
+    );
+    for case in By::Emergence.cases() {
+        let these: Vec<Hierarchy> = cells
+            .iter()
+            .filter(|cell| cell.case == case)
+            .filter_map(|cell| cell.hierarchy)
+            .collect();
+        let mean = |value: &dyn Fn(&Hierarchy) -> f64| {
+            these.iter().map(value).sum::<f64>() / these.len().max(1) as f64
+        };
+        text += &format!(
+            "{:16} {:>7.4} {:>11.1} {:>11.1} {:>15.4} {:>8.3}\n",
+            case.label(),
+            mean(&|h| h.midrib_sinuosity),
+            mean(&|h| h.secondaries.iter().sum::<usize>() as f64),
+            mean(&|h| h.difference() as f64),
+            mean(&|h| h.secondary_sinuosity),
+            mean(&|h| h.spacing_variation)
         );
     }
     text

@@ -20,6 +20,7 @@ use super::{Context, Failure, seeds};
 Examples:
   venation generate beech
   venation generate beech --seed 7 --size 2048 -o out
+  venation generate maple --season 0.55 --damage holes=0.1,spots=0.3 --maps preview -o autumn
   venation generate willow --seeds 1-3,5,7-20:2 -o willows        13 leaves, willows/salix-alba_s0001 …
   venation generate beech --outline scan.jpg --length-mm 72       a scanned leaf's outline
   venation generate beech --outline drawing.png --root 310,540    a drawing, petiole given in pixels
@@ -40,8 +41,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
     /// Maps to write: basecolor, opacity, normal, height, roughness, ambientocclusion (ao), orm,
-    /// translucency, thickness, veinmask, veinorder, bump; all or none [default: the file's, else all
-    /// but bump].
+    /// translucency, thickness, veinmask, veinorder; for people preview (lit) and enhancement; bump; all
+    /// or none [default: the file's, else the first eleven].
     #[arg(long, value_name = "LIST")]
     maps: Option<String>,
     /// Other files to write: obj, svg, json, graphml, csv; all or none [default: the file's, else obj].

@@ -51,6 +51,17 @@ pub(crate) enum OutlineWord {
     Polygon,
 }
 
+impl OutlineWord {
+    pub(crate) fn kind(self) -> OutlineKind {
+        match self {
+            Self::Auto => OutlineKind::Auto,
+            Self::Sketch => OutlineKind::Sketch,
+            Self::Photo => OutlineKind::Photo,
+            Self::Polygon => OutlineKind::Polygon,
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct LeafArgs {
     /// A preset (`venation presets` lists them) or a TOML file.
@@ -82,6 +93,25 @@ pub(crate) struct LeafArgs {
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     size: Option<u64>,
+    /// 0 summer, 0.5 autumn colour, 1 litter [default: the preset's, 0].
+    #[arg(long, value_name = "0..1")]
+    season: Option<f64>,
+    /// 0 just unfolded, 1 mature [default: the preset's, 1].
+    #[arg(long, value_name = "0..1")]
+    maturity: Option<f64>,
+    /// 1 well, less sick [default: the preset's, 1].
+    #[arg(long, value_name = "0..1")]
+    health: Option<f64>,
+    /// What has happened to it, as holes=0.2,margin_bites=0.1,skeletonise=0.1 (shares of the blade),
+    /// mines, spots, scorch, tears (0 to 1).
+    #[arg(long, value_name = "LIST")]
+    damage: Option<String>,
+    /// Other wounds on the same leaf.
+    #[arg(long, value_name = "N")]
+    damage_seed: Option<u64>,
+    /// Perturb every number of the margin by up to so many percent, on top of the preset's ranges.
+    #[arg(long, value_name = "PERCENT%")]
+    vary: Option<String>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.
     #[arg(long, value_name = "FILE.csv")]
@@ -91,7 +121,7 @@ pub(crate) struct LeafArgs {
     set: Vec<String>,
 }
 
-fn point(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn point(text: &str) -> Result<[f64; 2], String> {
     let wrong = || format!("`{text}` is not X,Y");
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     let number = |t: &str| t.trim().parse::<f64>().ok().filter(|v| v.is_finite());
@@ -127,7 +157,8 @@ fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
     if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
 }
 
-fn read_document(leaf: &str) -> Result<Document, Failure> {
+/// The document of a preset or a TOML file.
+pub(crate) fn read_document(leaf: &str) -> Result<Document, Failure> {
     if let Some(preset) = presets::find(leaf) {
         return Ok(preset.document()?);
     }
@@ -151,11 +182,26 @@ impl LeafArgs {
         if let Some(length) = self.length_mm {
             document.set(&format!("margin.length_mm={length}"), "--length-mm")?;
         }
+        if let Some(vary) = &self.vary {
+            document.set(&format!("vary={vary}"), "--vary")?;
+        }
         if let Some(growth) = self.growth {
             document.set(&format!("growth.type={}", growth.word()), "--growth")?;
         }
         if let Some(size) = self.size {
             document.set(&format!("texture.size_px={size}"), "--size")?;
+        }
+        let state = [("season", self.season), ("maturity", self.maturity), ("health", self.health)];
+        for (name, value) in state {
+            if let Some(value) = value {
+                document.set(&format!("state.{name}={value}"), &format!("--{name}"))?;
+            }
+        }
+        for wound in self.damage.iter().flat_map(|list| list.split(',')) {
+            document.set(&format!("damage.{}", wound.trim()), "--damage")?;
+        }
+        if let Some(seed) = self.damage_seed {
+            document.set(&format!("damage.seed={seed}"), "--damage-seed")?;
         }
         if let Some(path) = &self.outline {
             self.import_outline(path, &mut document, context)?;
@@ -183,12 +229,7 @@ impl LeafArgs {
         document: &mut Document,
         context: &Context<'_>,
     ) -> Result<(), Failure> {
-        let kind = match self.outline_kind {
-            OutlineWord::Auto => OutlineKind::Auto,
-            OutlineWord::Sketch => OutlineKind::Sketch,
-            OutlineWord::Photo => OutlineKind::Photo,
-            OutlineWord::Polygon => OutlineKind::Polygon,
-        };
+        let kind = self.outline_kind.kind();
         // Any length will do: each leaf scales the outline to the length it draws.
         let options = OutlineOptions { kind, root: self.root, y_up: self.y_up, length_mm: 100.0 };
         let imported =

@@ -5,9 +5,11 @@
 
 mod bench;
 mod compare;
+mod fit;
 mod generate;
 mod inspect;
 mod leaf_args;
+mod morph;
 mod presets;
 mod progress;
 mod seeds;
@@ -120,6 +122,7 @@ Examples:
   venation generate beech --outline scan.jpg -o out     grown in the outline of a scanned leaf
   venation generate linden --seeds 1-50 -o lindens      fifty different leaves
   venation compare beech -o growth.png                  growth types side by side
+  venation fit scan.jpg -o leaf.toml                    a real leaf as parameters that vary
   venation inspect out                                  its veins measured beside real leaves
   venation bench --auxins 1000,2000,4000,8000           time against the number of sources
   venation presets show beech > my.toml                 every setting, to edit and generate from
@@ -143,6 +146,10 @@ enum Command {
     Generate(Box<generate::Args>),
     /// Growth types, scatter patterns or vein algorithms side by side, as one labelled picture.
     Compare(Box<compare::Args>),
+    /// Find the parameters of real leaves.
+    Fit(Box<fit::Args>),
+    /// One leaf turning into another: frames, a strip and an animation.
+    Morph(Box<morph::Args>),
     /// Measure a vein pattern, grown or real, beside real leaves.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
@@ -169,6 +176,8 @@ pub(crate) fn run() -> Result<(), Failure> {
     match &cli.command {
         Command::Generate(args) => generate::run(args, &mut context),
         Command::Compare(args) => compare::run(args, &mut context),
+        Command::Fit(args) => fit::run(args, &mut context),
+        Command::Morph(args) => morph::run(args, &mut context),
         Command::Inspect(args) => inspect::run(args, &mut context),
         Command::Bench(args) => bench::run(args, context.stdout),
         Command::Presets(args) => presets::run(args, &mut context),

@@ -2,6 +2,7 @@
 
 use super::value::{self, from_plain};
 use super::{Document, DocumentError, Entry, Value, parameters, records};
+use crate::margin::instances;
 use crate::parameter::Parameter;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
@@ -33,6 +34,9 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     })?;
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
+    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0) {
+        spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
+    }
     Ok(spec)
 }
 

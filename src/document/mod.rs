@@ -17,6 +17,7 @@ mod write;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use crate::margin::MarginSpec;
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
 pub use value::Value;
@@ -56,6 +57,9 @@ pub struct Document {
     lists: BTreeSet<String>,
     /// The seed written in the file, which the command line may override.
     pub seed: Option<u64>,
+    /// By up to how many percent every number of the margin is perturbed, on top of the ranges
+    /// (`vary = 20`); see [`crate::margin::instances`].
+    pub vary: Option<f64>,
 }
 
 impl Document {
@@ -82,6 +86,10 @@ impl Document {
     ///
     /// As [`Document::parse`].
     pub fn set(&mut self, assignment: &str, origin: &str) -> Result<(), DocumentError> {
+        if let Some(percent) = parse::variation(assignment, origin)? {
+            self.vary = Some(percent);
+            return Ok(());
+        }
         let (key, value) = parse::assignment(assignment, origin)?;
         self.insert(&key, value, origin);
         Ok(())
@@ -120,6 +128,23 @@ impl Document {
         }
         self.entries.extend(over.entries);
         self.seed = over.seed.or(self.seed);
+        self.vary = over.vary.or(self.vary);
+    }
+
+    /// Gives the whole outline anew: forgets every `margin.` key that was given and sets all of them.
+    ///
+    /// # Panics
+    ///
+    /// If the lists of the specification run past what a document can hold; fitted ones never do.
+    pub fn set_margin(&mut self, margin: &MarginSpec, origin: &str) {
+        const GROUP: &str = "margin.";
+        self.entries.retain(|key, _| !key.starts_with(GROUP));
+        let spec = LeafSpec { margin: margin.clone(), ..LeafSpec::default() };
+        for (key, entry) in draw::document_of(&spec, 0).entries {
+            if key.starts_with(GROUP) {
+                self.entries.insert(key, Entry { value: entry.value, origin: origin.to_owned() });
+            }
+        }
     }
 
     /// Forgets the records of a list: those that follow are all of it.
@@ -144,7 +169,8 @@ impl Document {
         }
     }
 
-    /// One leaf: every range drawn with the seed's own stream for its key.
+    /// One leaf: every range drawn with the seed's own stream for its key, the margin perturbed by
+    /// [`vary`](Self::vary).
     ///
     /// # Errors
     ///

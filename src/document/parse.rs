@@ -10,6 +10,7 @@ use crate::parameter::{Kind, Parameter, RECORD};
 /// Keys of a file that are not knobs of the leaf.
 const SEED: &str = "seed";
 const VERSION: &str = "version";
+const VARY: &str = "vary";
 
 pub(super) fn document(text: &str, origin: &str) -> Result<Document, DocumentError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -49,6 +50,13 @@ impl Reader<'_> {
                     self.document.seed = Some(seed.ok_or_else(wrong)?);
                 }
                 _ if key == VERSION => {}
+                value if key == VARY => {
+                    let text = match value {
+                        DeValue::String(text) => text.to_string(),
+                        value => float(value).map_or_else(String::new, |x| x.to_string()),
+                    };
+                    self.document.vary = Some(percent(&text).map_err(fail)?);
+                }
                 value => {
                     let parameter = find(&key).ok_or_else(|| fail(unknown(&key)))?;
                     let value = read(value, &parameter).map_err(fail)?;
@@ -84,6 +92,27 @@ impl Reader<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// The percentage of `vary=20` or `vary=20%`; `None` for another key.
+pub(super) fn variation(text: &str, origin: &str) -> Result<Option<f64>, DocumentError> {
+    match text.split_once('=') {
+        Some((key, value)) if key.trim() == VARY => {
+            let fail = |problem| DocumentError { origin: origin.to_owned(), problem };
+            percent(value).map(Some).map_err(fail)
+        }
+        _ => Ok(None),
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let number = text.strip_suffix('%').unwrap_or(text).trim().parse::<f64>();
+    match number {
+        Ok(x) if (0.0..=100.0).contains(&x) => Ok(x),
+        Ok(x) => Err(format!("{VARY} = {x} is outside 0 to 100 %")),
+        Err(_) => Err(format!("{VARY} = `{text}`: it takes a percentage, as 20 or 20%")),
     }
 }
 

@@ -12,6 +12,13 @@ pub(super) fn toml(document: &Document, comments: Comments) -> String {
     if let Some(seed) = document.seed {
         let _ = writeln!(text, "seed = {seed}");
     }
+    if let Some(vary) = document.vary {
+        if comments == Comments::Full {
+            let _ =
+                writeln!(text, "# Every number of the margin perturbed by up to so many percent.");
+        }
+        let _ = writeln!(text, "vary = {}", float(vary));
+    }
     // Plain keys of a group must stand before the tables inside it.
     let mut group = String::new();
     for parameter in in_table_order() {

@@ -1,15 +1,20 @@
 //! Mathematics that has never heard of leaves. Vectors are glam's `DVec2`.
 
 pub mod bspline;
+pub mod deviation;
+pub mod minimise;
 pub mod noise;
+pub mod nurbs;
 pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;
 pub mod polygon;
+mod rings;
 pub mod scatter;
 pub mod segment_grid;
 pub mod segments;
 pub mod sparse;
+pub mod z_order;
 
 pub use glam::DVec2;
 

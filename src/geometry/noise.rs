@@ -1,4 +1,4 @@
-//! Gradient noise on the plane, and the integer hash beneath it.
+//! Gradient noise on the plane and along a line, and the integer hash beneath it.
 //!
 //! Source: K. Perlin, "Improving noise", ACM Trans. Graph. 21(3), 2002. Departs from it: the
 //! permutation table is an integer hash, so the pattern never repeats, and gradients are sixteen
@@ -65,6 +65,32 @@ pub fn fractal(mut x: f32, mut y: f32, octaves: u32, seed: u32) -> f32 {
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
+/// Smooth noise along a line: about one feature per unit, mean 0, within −1 … 1, 0 at whole numbers.
+#[must_use]
+pub fn gradient_1d(x: f64, seed: u32) -> f64 {
+    let cell = x.floor();
+    let t = x - cell;
+    let slope = |i: i64| 2.0 * f64::from(unit(lattice(i as i32, (i >> 32) as i32, seed))) - 1.0;
+    let (a, b) = (slope(cell as i64) * t, slope(cell as i64 + 1) * (t - 1.0));
+    let u = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    // Two slopes of one and minus one meet half-way at a half.
+    2.0 * (a + (b - a) * u)
+}
+
+/// The sum of `octaves` of [`gradient_1d`], each of twice the frequency and half the weight, within
+/// −1 … 1. Octaves are shifted against each other, so that their zeros do not meet.
+#[must_use]
+pub fn fractal_1d(x: f64, octaves: u32, seed: u32) -> f64 {
+    let (mut sum, mut weight, mut total, mut x) = (0.0, 1.0, 0.0, x);
+    for octave in 0..octaves {
+        sum += weight * gradient_1d(x, seed.wrapping_add(octave.wrapping_mul(0x68E3_1DA4)));
+        total += weight;
+        weight *= 0.5;
+        x = 2.0 * x + 0.37;
+    }
+    if total > 0.0 { sum / total } else { 0.0 }
+}
+
 #[inline]
 fn fade(t: f32) -> f32 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
@@ -117,6 +143,21 @@ mod tests {
             most = most.max(n.abs());
         }
         assert!((sum / 20_000.0).abs() < 0.02 && most > 0.4, "{sum} {most}");
+    }
+
+    #[test]
+    fn noise_along_a_line_is_bounded_centred_and_continuous() {
+        let (mut sum, mut most) = (0.0, 0.0_f64);
+        for i in 0..20_000 {
+            let x = f64::from(i) * 0.0731 - 700.0;
+            let n = fractal_1d(x, 3, 9);
+            assert!(n.abs() <= 1.0);
+            assert!((fractal_1d(x + 1e-4, 3, 9) - n).abs() < 2e-3);
+            sum += n;
+            most = most.max(n.abs());
+        }
+        assert!((sum / 20_000.0).abs() < 0.02 && most > 0.4, "{sum} {most}");
+        assert_ne!(gradient_1d(3.4, 1), gradient_1d(3.4, 2));
     }
 
     #[test]

@@ -100,26 +100,49 @@ pub fn is_convex(polygon: &[DVec2]) -> bool {
 /// it is simple. Near-linear for outlines of even edges.
 #[must_use]
 pub fn self_crossing(polygon: &[DVec2]) -> Option<DVec2> {
-    let n = polygon.len();
     let index = SegmentIndex::of_polygon(polygon);
-    (0..n).find_map(|i| {
-        let (a, b) = (polygon[i], polygon[(i + 1) % n]);
-        let hit = index.any_near(a, b, |j| {
-            if j == i {
-                return false;
-            }
-            let (c, d) = (polygon[j], polygon[(j + 1) % n]);
-            if j == (i + 1) % n {
-                // Neighbours share b; they overlap only when the second folds back on the first.
-                return cross(a, b, d) == 0.0 && (d - b).dot(a - b) > 0.0;
-            }
-            if i == (j + 1) % n {
-                return cross(c, d, b) == 0.0 && (b - a).dot(c - a) > 0.0;
-            }
-            segments_touch(a, b, c, d)
-        });
+    (0..polygon.len()).find_map(|i| {
+        let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        let hit = index.any_near(a, b, |j| edges_touch(polygon, i, j));
         hit.then(|| (a + b) * 0.5)
     })
+}
+
+/// The pairs of edges that touch, as [`self_crossing`] understands it; the smaller index first.
+#[must_use]
+pub fn crossings(polygon: &[DVec2]) -> Vec<(usize, usize)> {
+    let index = SegmentIndex::of_polygon(polygon);
+    let mut pairs = Vec::new();
+    for i in 0..polygon.len() {
+        let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        index.any_near(a, b, |j| {
+            if edges_touch(polygon, i, j) {
+                pairs.push((i.min(j), i.max(j)));
+            }
+            false
+        });
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// Whether two edges touch; neighbours only when one folds back on the other.
+fn edges_touch(polygon: &[DVec2], i: usize, j: usize) -> bool {
+    let n = polygon.len();
+    if j == i {
+        return false;
+    }
+    let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+    let (c, d) = (polygon[j], polygon[(j + 1) % n]);
+    if j == (i + 1) % n {
+        // Neighbours share b; they overlap only when the second folds back on the first.
+        return cross(a, b, d) == 0.0 && (d - b).dot(a - b) > 0.0;
+    }
+    if i == (j + 1) % n {
+        return cross(c, d, b) == 0.0 && (b - a).dot(c - a) > 0.0;
+    }
+    segments_touch(a, b, c, d)
 }
 
 /// Points along the boundary at equal steps of at most `step`, starting at vertex 0.

@@ -17,6 +17,7 @@ const MAX_CELLS: f64 = 4e6;
 pub struct SegmentGrid {
     bounds: Rect,
     cell: f64,
+    per_cell: f64,
     columns: usize,
     rows: usize,
     heads: Vec<u32>,
@@ -36,15 +37,16 @@ impl SegmentGrid {
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(size.x), count(size.y));
         let heads = vec![NONE; columns * rows];
-        Self { bounds, cell, columns, rows, heads, entries: Vec::new(), len: 0 }
+        let per_cell = 1.0 / cell;
+        Self { bounds, cell, per_cell, columns, rows, heads, entries: Vec::new(), len: 0 }
     }
 
     fn column(&self, x: f64) -> usize {
-        (((x - self.bounds.min.x) / self.cell).max(0.0) as usize).min(self.columns - 1)
+        (((x - self.bounds.min.x) * self.per_cell).max(0.0) as usize).min(self.columns - 1)
     }
 
     fn row(&self, y: f64) -> usize {
-        (((y - self.bounds.min.y) / self.cell).max(0.0) as usize).min(self.rows - 1)
+        (((y - self.bounds.min.y) * self.per_cell).max(0.0) as usize).min(self.rows - 1)
     }
 
     /// Adds the segment a–b.

@@ -5,6 +5,7 @@
 //! mean segment wide, so a query near few segments looks at few.
 
 use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
+use super::rings::Size;
 use super::{DVec2, Rect};
 
 /// An index over segments a–b.
@@ -18,6 +19,8 @@ pub struct SegmentIndex {
     /// Where the list of each cell starts in `items`.
     starts: Vec<u32>,
     items: Vec<u32>,
+    /// For each cell that no segment comes into, whether it lies inside the polygon they make.
+    inside: Vec<bool>,
 }
 
 /// More cells than this buy nothing and cost memory.
@@ -50,8 +53,10 @@ impl SegmentIndex {
             rows,
             starts: vec![0; columns * rows + 1],
             items: Vec::new(),
+            inside: Vec::new(),
         };
         index.fill();
+        index.find_inside();
         index
     }
 
@@ -115,6 +120,22 @@ impl SegmentIndex {
         })
     }
 
+    /// Finds out which of the empty cells lie inside. Beside an empty cell, an empty one is like it.
+    fn find_inside(&mut self) {
+        self.inside = vec![false; self.columns * self.rows];
+        for row in 0..self.rows {
+            let mut known = None;
+            for column in 0..self.columns {
+                let is_empty = self.cell(column, row).is_empty();
+                let middle = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+                let is_inside =
+                    || self.crosses_oddly(self.min + middle / self.per_cell, column, row);
+                known = is_empty.then(|| known.unwrap_or_else(is_inside));
+                self.inside[row * self.columns + column] = known == Some(true);
+            }
+        }
+    }
+
     /// Whether `p` lies inside the closed polygon whose edges these are (even-odd rule).
     #[must_use]
     pub fn contains(&self, p: DVec2) -> bool {
@@ -122,7 +143,16 @@ impl SegmentIndex {
         if cell.y < 0.0 || cell.y >= self.rows as f64 || cell.x >= self.columns as f64 {
             return false;
         }
-        let (row, first) = (cell.y as usize, cell.x.max(0.0) as usize);
+        let (row, column) = (cell.y as usize, cell.x.max(0.0) as usize);
+        if self.cell(column, row).is_empty() {
+            return self.inside[row * self.columns + column];
+        }
+        self.crosses_oddly(p, column, row)
+    }
+
+    /// Whether the ray from `p`, in the cell of that column and row, to the right crosses an odd number
+    /// of segments.
+    fn crosses_oddly(&self, p: DVec2, first: usize, row: usize) -> bool {
         let mut inside = false;
         for x in first..self.columns {
             for &i in self.cell(x, row) {
@@ -145,38 +175,26 @@ impl SegmentIndex {
         // Rings of cells outwards; stop once a whole ring is farther than the best.
         let centre = ((p - self.min) * self.per_cell)
             .clamp(DVec2::ZERO, DVec2::new(self.columns as f64 - 1.0, self.rows as f64 - 1.0));
-        let (cx, cy) = (centre.x as isize, centre.y as isize);
+        let home = (centre.x as usize, centre.y as usize);
+        let size = Size { columns: self.columns, rows: self.rows };
         let outside = p.distance(p.clamp(
             self.min,
             self.min + DVec2::new(self.columns as f64, self.rows as f64) / self.per_cell,
         ));
-        for ring in 0..self.columns.max(self.rows) as isize {
-            let clear = ((ring - 1).max(0) as f64 / self.per_cell).max(outside);
+        for ring in 0..size.last_ring() {
+            let clear = (ring.saturating_sub(1) as f64 / self.per_cell).max(outside);
             if clear * clear > best.0 {
                 break;
             }
-            let mut visit = |x: isize, y: isize| {
-                if x < 0 || y < 0 || x >= self.columns as isize || y >= self.rows as isize {
-                    return;
-                }
-                for &i in self.cell(x as usize, y as usize) {
+            size.for_each_in_ring(home, ring, |column, row| {
+                for &i in self.cell(column, row) {
                     let (a, b) = self.segments[i as usize];
                     let d2 = p.distance_squared(nearest_on_segment(a, b, p));
                     if (d2, i as usize) < best {
                         best = (d2, i as usize);
                     }
                 }
-            };
-            for x in cx - ring..=cx + ring {
-                visit(x, cy - ring);
-                if ring > 0 {
-                    visit(x, cy + ring);
-                }
-            }
-            for y in cy - ring + 1..cy + ring {
-                visit(cx - ring, y);
-                visit(cx + ring, y);
-            }
+            });
         }
         (best.1 != usize::MAX).then_some(best)
     }

@@ -17,13 +17,18 @@ use png::{BitDepth, ColorType, DeflateCompression, Filter};
 /// A map of one side as a PNG.
 #[must_use]
 pub fn map_png(map: MapKind, maps: &SideMaps, caption: &Caption<'_>) -> Vec<u8> {
-    encode(&maps.base_colour, &maps.samples(map), &layout(map), caption)
+    encode(maps.dimensions(map), &maps.samples(map), &layout(map), caption)
 }
 
 /// How a map is packed.
 fn layout(map: MapKind) -> Layout {
     let packing = match map {
-        MapKind::BaseColour | MapKind::Translucency | MapKind::Orm | MapKind::Normal => COLOUR,
+        MapKind::BaseColour
+        | MapKind::Translucency
+        | MapKind::Orm
+        | MapKind::Normal
+        | MapKind::Preview
+        | MapKind::Enhancement => COLOUR,
         MapKind::Height => HEIGHT,
         _ => OPACITY,
     };
@@ -52,7 +57,40 @@ pub struct Caption<'a> {
 /// A picture of colours, sRGB with straight alpha.
 #[must_use]
 pub fn colour_png(picture: &Grid<[u8; 4]>, caption: &Caption<'_>) -> Vec<u8> {
-    encode(picture, picture.values().as_flattened(), &COLOUR, caption)
+    let size = (picture.width(), picture.height());
+    encode(size, picture.values().as_flattened(), &COLOUR, caption)
+}
+
+/// An animated PNG of pictures of one size, each shown for a `per_second`th of a second, for ever.
+/// Browsers and Blender play it; others show the first picture.
+#[must_use]
+pub fn film(pictures: &[Grid<[u8; 4]>], per_second: u16) -> Vec<u8> {
+    let mut file = Vec::new();
+    write_film(&mut file, pictures, per_second).expect("pictures are written to memory");
+    file
+}
+
+fn write_film(
+    file: &mut Vec<u8>,
+    pictures: &[Grid<[u8; 4]>],
+    per_second: u16,
+) -> Result<(), png::EncodingError> {
+    let count = |n: usize| u32::try_from(n).expect("fewer pictures than 32 bits count");
+    let Some(first) = pictures.first() else { return Ok(()) };
+    let mut encoder = png::Encoder::new(file, count(first.width()), count(first.height()));
+    encoder.set_color(COLOUR.colour);
+    encoder.set_depth(COLOUR.depth);
+    encoder.set_deflate_compression(COLOUR.compression);
+    encoder.set_filter(COLOUR.filter);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_animated(count(pictures.len()), 0)?;
+    encoder.set_frame_delay(1, per_second)?;
+    encoder.add_text_chunk("Software".into(), super::GENERATOR.into())?;
+    let mut writer = encoder.write_header()?;
+    for picture in pictures {
+        writer.write_image_data(picture.values().as_flattened())?;
+    }
+    writer.finish()
 }
 
 /// How samples lie in a file, what they are, and how they are packed.
@@ -102,22 +140,22 @@ const HEIGHT: Layout = Layout {
 /// # Panics
 ///
 /// If the picture is empty: PNG has no such thing.
-fn encode<T>(grid: &Grid<T>, samples: &[u8], layout: &Layout, caption: &Caption<'_>) -> Vec<u8> {
+fn encode(size: (usize, usize), samples: &[u8], layout: &Layout, caption: &Caption<'_>) -> Vec<u8> {
     let mut file = Vec::new();
-    write(&mut file, grid, samples, layout, caption)
+    write(&mut file, size, samples, layout, caption)
         .expect("a picture that is not empty is written to memory without error");
     file
 }
 
-fn write<T>(
+fn write(
     file: &mut Vec<u8>,
-    grid: &Grid<T>,
+    (width, height): (usize, usize),
     samples: &[u8],
     layout: &Layout,
     caption: &Caption<'_>,
 ) -> Result<(), png::EncodingError> {
     let side = |pixels| u32::try_from(pixels).expect("a side of a picture fits in 32 bits");
-    let mut encoder = png::Encoder::new(file, side(grid.width()), side(grid.height()));
+    let mut encoder = png::Encoder::new(file, side(width), side(height));
     encoder.set_color(layout.colour);
     encoder.set_depth(layout.depth);
     encoder.set_deflate_compression(layout.compression);

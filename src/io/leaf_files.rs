@@ -11,8 +11,8 @@ use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
 use super::{file_stem, graph, graphml, obj, svg};
 use crate::margin::Margin;
 use crate::seed::Seed;
-use crate::texture::TextureSet;
 use crate::texture::map::MapKind;
+use crate::texture::{SideMaps, TextureSet};
 use crate::veins::Venation;
 
 /// A leaf and how it is to be written.
@@ -94,6 +94,9 @@ fn entries(stem: &str, maps: &[MapKind], formats: &[FormatKind]) -> Vec<(String,
     let mut entries = vec![(SPEC_FILE.to_owned(), Content::Spec)];
     for (folder, side) in [("", Side::Front), ("back/", Side::Back)] {
         for &map in MapKind::ALL.iter().filter(|map| maps.contains(map)) {
+            if side == Side::Back && !map.has_back() {
+                continue;
+            }
             let path = format!("{folder}{stem}_{}.png", map.suffix());
             entries.push((path, Content::Map(side, map)));
         }
@@ -143,7 +146,10 @@ impl Content {
             Self::Spec => leaf.spec_toml.into(),
             Self::Card => card.obj().into(),
             Self::Materials => card.mtl().into(),
-            Self::Drawing => svg::svg(leaf.shown_name(), leaf.margin, leaf.venation, frame).into(),
+            Self::Drawing => {
+                let rings = &leaf.textures.rings;
+                svg::svg(leaf.shown_name(), leaf.margin, Some(leaf.venation), frame, rings).into()
+            }
             Self::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
             Self::GraphMl => graphml::graphml(leaf.venation).into(),
             Self::Table(table) => table.csv(leaf.margin, leaf.venation).into(),
@@ -179,8 +185,8 @@ impl Content {
             channels: map.map(|map| map.channels().word().to_owned()),
             bits: map.map(MapKind::bits),
             colour_space: map.map(|map| map.colour_space().to_owned()),
-            width: map.map(|_| leaf.textures.front.base_colour.width()),
-            height: map.map(|_| leaf.textures.front.base_colour.height()),
+            width: picture.map(|(side, map)| leaf.maps_of(side).dimensions(map).0),
+            height: picture.map(|(side, map)| leaf.maps_of(side).dimensions(map).1),
             bytes: bytes.len(),
             sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
         }
@@ -193,11 +199,15 @@ impl LeafFiles<'_> {
         if self.title.is_empty() { self.name } else { self.title }
     }
 
-    fn encode_map(&self, side: Side, map: MapKind) -> Vec<u8> {
-        let maps = match side {
+    fn maps_of(&self, side: Side) -> &SideMaps {
+        match side {
             Side::Front => &self.textures.front,
             Side::Back => &self.textures.back,
-        };
+        }
+    }
+
+    fn encode_map(&self, side: Side, map: MapKind) -> Vec<u8> {
+        let maps = self.maps_of(side);
         let description = format!("{} side; {}", side.word(), map.meaning());
         let seed = self.seed.0.to_string();
         // The picture that is passed on alone carries the settings, so that it can be made again.
@@ -223,6 +233,7 @@ impl LeafFiles<'_> {
             name: self.name.to_owned(),
             title: self.title.to_owned(),
             seed: self.seed.0,
+            albedo: self.textures.albedo.word().to_owned(),
             size_px: self.textures.front.base_colour.width(),
             length_mm: graph::rounded(self.margin.length_mm()),
             area_mm2: graph::rounded(self.margin.area_mm2()),

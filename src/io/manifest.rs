@@ -23,6 +23,9 @@ pub struct Manifest {
     pub title: String,
     /// The seed it was drawn from.
     pub seed: u64,
+    /// What the base colour holds: `total` reflectance, or `diffuse`, less the mirror part of the
+    /// surface.
+    pub albedo: String,
     /// Side of the maps (pixels).
     pub size_px: usize,
     /// Blade from base to apex (mm).

@@ -4,6 +4,8 @@
 //! [`write::write_files`] puts named bytes into a folder. [`file_names`] tells beforehand what a run
 //! will write.
 
+pub mod animation;
+pub mod fit;
 pub mod graph;
 pub mod graphml;
 pub mod image;

@@ -16,8 +16,9 @@ use glam::DVec2;
 use crate::geometry::{Rect, polygon};
 use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
-use crate::margin::{Margin, MarginError, sketch};
+use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch};
 use crate::parameter::words;
+use crate::seed::Seed;
 
 words! {
     /// What a file shows.
@@ -68,6 +69,31 @@ pub struct ImportedOutline {
     pub apex: [f64; 2],
     /// What was done that the user should know of, a short sentence each.
     pub notes: Vec<String>,
+}
+
+impl ImportedOutline {
+    /// The outline as a margin, with its slits.
+    ///
+    /// # Errors
+    ///
+    /// None that an outline as it was imported could cause; those of [`Margin::new`] for one that was
+    /// changed.
+    pub fn margin(&self) -> Result<Margin, MarginError> {
+        let spec = MarginSpec {
+            kind: MarginKind::Polygon,
+            length_mm: self.length_mm(),
+            polygon_mm: self.polygon_mm.clone(),
+            cuts_mm: self.cuts_mm.clone(),
+            ..MarginSpec::default()
+        };
+        // Nothing random in it: no teeth, waves or roughness.
+        margin::build(&spec, Seed(0))
+    }
+
+    fn length_mm(&self) -> f64 {
+        let on_axis = self.polygon_mm.iter().filter(|p| p[0].abs() <= 1e-9 * p[1].abs().max(1.0));
+        on_axis.map(|p| p[1]).fold(0.0, f64::max)
+    }
 }
 
 /// Why a file gave no outline. Displays as one line: the path, then the problem.

@@ -23,9 +23,15 @@ const WIDTH_STEP: f64 = 0.1;
 /// Width of the outline (mm): a hairline that still shows on screen.
 const OUTLINE_WIDTH_MM: f64 = 0.1;
 
-/// The drawing of a leaf.
+/// The drawing of a leaf, or of its outline alone; `rings` outline what is left of a damaged blade.
 #[must_use]
-pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFrame) -> String {
+pub fn svg(
+    title: &str,
+    margin: &Margin,
+    venation: Option<&Venation>,
+    frame: &TextureFrame,
+    rings: &[Vec<DVec2>],
+) -> String {
     let page = Page { frame };
     let side = number(frame.side_mm);
     let mut svg = format!(
@@ -37,13 +43,17 @@ pub fn svg(title: &str, margin: &Margin, venation: &Venation, frame: &TextureFra
         escaped(title)
     );
     open_layer(&mut svg, 1, "outline", &format!(" stroke-width=\"{OUTLINE_WIDTH_MM}\""));
-    let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(margin.outline()));
+    // Of a damaged blade what is left, gaps as rings of their own.
+    let whole = [margin.outline().to_vec()];
+    for ring in if rings.is_empty() { &whole[..] } else { rings } {
+        let _ = writeln!(svg, "<path d=\"{} Z\"/>", page.path(ring));
+    }
     for cut in margin.cuts() {
         let _ = writeln!(svg, "<path d=\"{}\"/>", page.path(cut));
     }
     svg.push_str("</g>\n");
 
-    let pieces = pieces(venation);
+    let pieces = venation.map(pieces).unwrap_or_default();
     let orders = pieces.iter().map(|piece| piece.order).max().unwrap_or(0);
     for order in 1..=orders {
         open_layer(&mut svg, usize::from(order) + 1, &order_name(order), "");

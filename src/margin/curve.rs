@@ -59,14 +59,18 @@ pub fn spline(waypoints: &[Waypoint], tension: f64) -> QuadraticBSpline {
     QuadraticBSpline::new(knots, control)
 }
 
-/// Adds the spline as points that stay within [`TOLERANCE`] of it, without its first point.
-pub fn append(points: &mut Vec<DVec2>, waypoints: &[Waypoint], tension: f64) {
-    for pair in waypoints.windows(2) {
+/// The spline as quadratic Bézier curves, from end to end.
+pub fn parabolas(waypoints: &[Waypoint], tension: f64) -> impl Iterator<Item = [DVec2; 3]> + '_ {
+    waypoints.windows(2).flat_map(move |pair| {
         let (leaving, arriving) = between(&pair[0], &pair[1], tension);
         let middle = (leaving + arriving) * 0.5;
-        parabola(points, [pair[0].at, leaving, middle]);
-        parabola(points, [middle, arriving, pair[1].at]);
-    }
+        [[pair[0].at, leaving, middle], [middle, arriving, pair[1].at]]
+    })
+}
+
+/// Adds the spline as points that stay within [`TOLERANCE`] of it, without its first point.
+pub fn append(points: &mut Vec<DVec2>, waypoints: &[Waypoint], tension: f64) {
+    parabolas(waypoints, tension).for_each(|span| parabola(points, span));
 }
 
 /// The same from the last waypoint to the first, without the last: the way down.

@@ -8,8 +8,12 @@
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
 pub mod curve;
+pub mod detail;
+pub mod fit;
+pub mod instances;
 mod landmarks;
 pub mod lobes;
+pub mod morph;
 mod outline;
 pub mod parametric;
 pub mod placement;
@@ -19,8 +23,11 @@ pub mod sketch;
 
 use glam::DVec2;
 
+use crate::geometry::segments::SegmentIndex;
 use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
+use crate::seed::Seed;
+use detail::{RoughnessSpec, TeethSpec, WaveSpec};
 pub use landmarks::{Landmark, LandmarkKind};
 use lobes::LobeRecord;
 use lobes::shorthand::LobingSpec;
@@ -63,10 +70,20 @@ parameters! {
         lobing: group(LobingSpec, LobingSpec::default()),
         /// The lobes of a lobed leaf one by one.
         lobe: records(LobeRecord),
+        /// Teeth along the margin.
+        teeth: group(TeethSpec, TeethSpec::default()),
+        /// Waves of the margin.
+        waves: group(WaveSpec, WaveSpec::default()),
+        /// Fine unevenness of the margin.
+        roughness: group(RoughnessSpec, RoughnessSpec::default()),
         /// The outline when `kind = "polygon"`: base at [0, 0], apex on +y; scaled to `length_mm`.
         polygon_mm: points(),
         /// Slits inside the polygon, as open lines.
         cuts_mm: lines(),
+        /// Tips of teeth that stand on the polygon: a line of points for each order.
+        tooth_tips_mm: lines(),
+        /// Lobes of the polygon: for each where its vein begins, and its tip.
+        lobe_veins_mm: lines(),
     }
 }
 
@@ -277,6 +294,13 @@ impl Margin {
         &self.cuts
     }
 
+    /// The lines that no vein crosses: the outline and the cuts.
+    #[must_use]
+    pub fn lines(&self) -> SegmentIndex {
+        let cuts = self.cuts.iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
+        SegmentIndex::new(polygon::edges(&self.outline).chain(cuts).collect())
+    }
+
     /// What stands on the margin (lobe tips, valleys, teeth), in the order of the vertices. Empty
     /// when the outline came as a polygon.
     #[must_use]
@@ -328,12 +352,26 @@ impl Margin {
     }
 }
 
-/// The margin of a leaf.
+/// The margin of a leaf; `seed` draws what is irregular about its teeth, waves and roughness.
 ///
 /// # Errors
 ///
 /// [`MarginError`] names the key, the value and what to change.
-pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
+pub fn build(spec: &MarginSpec, seed: Seed) -> Result<Margin, MarginError> {
+    let plain = entire(spec)?;
+    if detail::is_plain(spec) {
+        return Ok(plain);
+    }
+    let hint = "lower margin.teeth.depth, margin.waves.height or margin.roughness.height_mm";
+    Margin::from_outline(detail::set(&plain.to_outline(), spec, seed)?, hint)
+}
+
+/// The margin without teeth, waves and roughness.
+///
+/// # Errors
+///
+/// As [`build`].
+pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
     match spec.kind {
         MarginKind::Unilobed => {
             let outline = parametric::outline(spec)?.peltate(spec.base_inset);
@@ -365,7 +403,9 @@ pub fn build(spec: &MarginSpec) -> Result<Margin, MarginError> {
             let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
             let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
             let apex = apex_vertex(&outline);
-            Margin::new(outline, apex, cuts, "mend margin.polygon_mm there")
+            let landmarks = spec.polygon_landmarks(&outline);
+            let outline = Outline { points: outline, apex, cuts, landmarks };
+            Margin::from_outline(outline, "mend margin.polygon_mm there")
         }
     }
 }
@@ -379,12 +419,33 @@ impl MarginSpec {
         let apex = apex_vertex(&given);
         let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), self.length_mm);
         if self.kind == MarginKind::Polygon && scale != 1.0 {
-            for p in spec.polygon_mm.iter_mut().chain(spec.cuts_mm.iter_mut().flatten()) {
+            let lines = [&mut spec.cuts_mm, &mut spec.tooth_tips_mm, &mut spec.lobe_veins_mm];
+            let points = lines.into_iter().flatten().flatten();
+            for p in spec.polygon_mm.iter_mut().chain(points) {
                 *p = p.map(|x| x * scale);
             }
             spec.polygon_mm[apex][1] = self.length_mm;
         }
         spec
+    }
+}
+
+impl MarginSpec {
+    /// What the settings know of a polygon: each at the vertex nearest to it.
+    fn polygon_landmarks(&self, outline: &[DVec2]) -> Vec<Landmark> {
+        let nearest = |p: &[f64; 2]| {
+            let far = |i: &usize| outline[*i].distance_squared(DVec2::from(*p));
+            (0..outline.len()).min_by(|i, j| far(i).total_cmp(&far(j)))
+        };
+        let orders = self.tooth_tips_mm.iter().zip(1_u8..);
+        let teeth = orders
+            .flat_map(|(tips, order)| tips.iter().map(move |p| (p, LandmarkKind::Tooth { order })));
+        let lobes = self.lobe_veins_mm.iter().filter_map(|vein| match &vein[..] {
+            [origin, tip] => Some((tip, LandmarkKind::LobeTip { origin: DVec2::from(*origin) })),
+            _ => None,
+        });
+        let all = teeth.chain(lobes);
+        all.filter_map(|(p, kind)| Some(Landmark { vertex: nearest(p)?, kind })).collect()
     }
 }
 

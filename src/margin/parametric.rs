@@ -129,6 +129,13 @@ fn waypoints(side: &SideSpec, name: &str) -> Result<Vec<Waypoint>, MarginError> 
     Ok(list)
 }
 
+impl MarginSpec {
+    /// The two sides of a unilobed leaf, right and left, as they are drawn.
+    pub(super) fn sides(&self) -> [SideSpec; 2] {
+        [self.right.clone(), self.right.mixed(&self.left, self.asymmetry)]
+    }
+}
+
 /// What a bent midrib makes of a waypoint of the right side; the midrib is an arc from (0, 0) to (0, 1)
 /// that turns by `bend` (radians) and bows to the right. Source: Garg, figure 5.23, where landmarks of
 /// a leaf with a curved vein are given relative to that vein.
@@ -153,7 +160,7 @@ fn bent(waypoint: &Waypoint, bend: f64) -> Waypoint {
 ///
 /// [`MarginError::Landmark`] for angles and landmarks that contradict each other.
 pub fn outline(spec: &MarginSpec) -> Result<Outline, MarginError> {
-    let left = spec.right.mixed(&spec.left, spec.asymmetry);
+    let [right, left] = spec.sides();
     let bend = Angle::from_degrees(spec.midrib_bend_deg).radians();
     let side = |side: &SideSpec, name, bend: f64| -> Result<Vec<Waypoint>, MarginError> {
         let mut list = waypoints(side, name)?;
@@ -163,7 +170,7 @@ pub fn outline(spec: &MarginSpec) -> Result<Outline, MarginError> {
         Ok(list)
     };
     let (right, left) =
-        ((side(&spec.right, "right", bend)?, &spec.right), (side(&left, "left", -bend)?, &left));
+        ((side(&right, "right", bend)?, &right), (side(&left, "left", -bend)?, &left));
     let mut points = Vec::with_capacity(256);
     let mut landmarks = Vec::new();
     points.push(DVec2::ZERO);
@@ -192,7 +199,7 @@ pub fn outline(spec: &MarginSpec) -> Result<Outline, MarginError> {
 mod tests {
     use super::*;
     use crate::geometry::polygon;
-    use crate::margin::build;
+    use crate::margin::entire;
 
     fn plain() -> SideSpec {
         SideSpec { waist_x: 0.3, waist_y: 0.4, ..SideSpec::default() }
@@ -202,11 +209,11 @@ mod tests {
     fn the_two_sides_are_their_own() {
         let left = SideSpec { waist_x: 0.4, ..plain() };
         let spec = MarginSpec { right: plain(), left, ..MarginSpec::default() };
-        let margin = build(&spec).unwrap();
+        let margin = entire(&spec).unwrap();
         let bounds = margin.bounds();
         assert!((bounds.max.x - 0.3 * 80.0).abs() < 1e-2, "{bounds:?}");
         assert!((bounds.min.x + 0.4 * 80.0).abs() < 1e-2, "{bounds:?}");
-        let mirrored = build(&MarginSpec { asymmetry: 0.0, ..spec }).unwrap();
+        let mirrored = entire(&MarginSpec { asymmetry: 0.0, ..spec }).unwrap();
         assert!((mirrored.bounds().min.x + 0.3 * 80.0).abs() < 1e-2);
         assert_eq!(margin.check(), None);
     }
@@ -215,7 +222,7 @@ mod tests {
     fn a_cordate_base_lies_below_the_petiole() {
         let side = SideSpec { base_angle_deg: 130.0, tail_depth: 0.2, ..plain() };
         let spec = MarginSpec { right: side.clone(), left: side, ..MarginSpec::default() };
-        let margin = build(&spec).unwrap();
+        let margin = entire(&spec).unwrap();
         assert!((margin.bounds().min.y + 16.0).abs() < 1e-2);
         assert!(polygon::contains(margin.outline(), DVec2::new(0.0, 1.0)));
         assert!(!polygon::contains(margin.outline(), DVec2::new(0.0, -1.0)));
@@ -225,7 +232,7 @@ mod tests {
     fn landmarks_that_contradict_each_other_name_the_key() {
         let side = SideSpec { base_angle_deg: 120.0, ..plain() };
         let spec = MarginSpec { left: side, ..MarginSpec::default() };
-        let message = build(&spec).unwrap_err().to_string();
+        let message = entire(&spec).unwrap_err().to_string();
         assert!(message.contains("margin.left.base_angle_deg = 120"), "{message}");
     }
 
@@ -233,7 +240,7 @@ mod tests {
     fn a_drip_tip_is_as_slender_as_its_landmark_says() {
         let side = SideSpec { drip_length: 0.3, drip_x: 0.03, apex_angle_deg: 10.0, ..plain() };
         let spec = MarginSpec { right: side.clone(), left: side, ..MarginSpec::default() };
-        let margin = build(&spec).unwrap();
+        let margin = entire(&spec).unwrap();
         let necks: Vec<DVec2> = margin
             .landmarks()
             .iter()
@@ -246,7 +253,7 @@ mod tests {
         assert!(tip.map(|p| p.x.abs()).fold(0.0, f64::max) < 0.0301 * 80.0);
         let long = SideSpec { drip_length: 0.6, ..plain() };
         let spec = MarginSpec { right: long, ..MarginSpec::default() };
-        assert!(build(&spec).unwrap_err().to_string().contains("margin.right.drip_length = 0.6"));
+        assert!(entire(&spec).unwrap_err().to_string().contains("margin.right.drip_length = 0.6"));
     }
 
     #[test]
@@ -259,7 +266,7 @@ mod tests {
             midrib_bend_deg: bend,
             ..MarginSpec::default()
         };
-        let margin = build(&spec).unwrap();
+        let margin = entire(&spec).unwrap();
         // The middle of an arc over a chord of 1 that turns by `bend` lies tan(bend/4)/2 beside it.
         let sag = (bend.to_radians() / 4.0).tan() / 2.0;
         let waists = [sag + 0.05, sag - 0.05].map(|x| DVec2::new(x, 0.5) * 80.0);
@@ -268,7 +275,7 @@ mod tests {
                 margin.outline().iter().map(|p| p.distance(waist)).fold(f64::INFINITY, f64::min);
             assert!(near < 1e-9, "{waist}: {near}");
         }
-        let mirrored = build(&MarginSpec { midrib_bend_deg: -bend, ..spec }).unwrap();
+        let mirrored = entire(&MarginSpec { midrib_bend_deg: -bend, ..spec }).unwrap();
         assert!((mirrored.bounds().min.x + margin.bounds().max.x).abs() < 1e-9);
     }
 
@@ -282,13 +289,13 @@ mod tests {
             length_mm: 100.0,
             ..MarginSpec::default()
         };
-        let margin = build(&spec).unwrap();
+        let margin = entire(&spec).unwrap();
         assert_eq!(margin.check(), None);
         assert!(margin.is_peltate() && polygon::contains(margin.outline(), DVec2::ZERO));
         assert_eq!(margin.apex(), DVec2::new(0.0, 100.0));
         assert!(margin.outline()[0].distance(DVec2::new(0.0, -100.0 * 0.4 / 0.6)) < 1e-9);
         // Its shape is that of the leaf whose base is on the margin.
-        let plain = build(&MarginSpec { base_inset: 0.0, ..spec }).unwrap();
+        let plain = entire(&MarginSpec { base_inset: 0.0, ..spec }).unwrap();
         assert!(!plain.is_peltate());
         assert!((margin.area_mm2() * 0.36 / plain.area_mm2() - 1.0).abs() < 1e-3);
     }

@@ -136,6 +136,22 @@ impl Guide {
     fn between(&self, texel: usize) -> (usize, f32) {
         between(texel, self.per_texel, self.side)
     }
+
+    /// Nodes in a row.
+    pub(super) fn side(&self) -> usize {
+        self.side
+    }
+
+    /// Nodes to the texel.
+    pub(super) fn per_texel(&self) -> f32 {
+        self.per_texel
+    }
+
+    /// The node of this number, row by row from the top.
+    #[inline]
+    pub(super) fn node(&self, i: usize) -> Place {
+        Place::of(self.nodes[i])
+    }
 }
 
 /// The guide along one row of the texture.
@@ -156,14 +172,14 @@ impl GuideRow {
 
 /// The node before a texel's centre, and how far towards the next one the centre lies.
 #[inline]
-fn between(texel: usize, per_texel: f32, side: usize) -> (usize, f32) {
+pub(super) fn between(texel: usize, per_texel: f32, side: usize) -> (usize, f32) {
     let g = ((texel as f32 + 0.5) * per_texel - 0.5).clamp(0.0, side as f32 - 1.0);
     let i = (g as usize).min(side - 2);
     (i, g - i as f32)
 }
 
 #[inline]
-fn mixed(a: &[f32; 8], b: &[f32; 8], t: f32) -> [f32; 8] {
+pub(super) fn mixed<const N: usize>(a: &[f32; N], b: &[f32; N], t: f32) -> [f32; N] {
     std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t)
 }
 
@@ -181,17 +197,39 @@ fn vein_lines(venation: &Venation, wanted: impl Fn(u8) -> bool) -> Vec<Line> {
 }
 
 /// The nodes of the guide in leaf space.
-struct Lattice<'a> {
-    frame: &'a TextureFrame,
-    side: usize,
+pub(super) struct Lattice<'a> {
+    pub frame: &'a TextureFrame,
+    pub side: usize,
 }
 
 impl Lattice<'_> {
-    fn leaf(&self, x: usize, y: usize) -> DVec2 {
+    /// Distance from every node to the nearest vein up to an order (mm).
+    pub(super) fn vein_distances(&self, venation: &Venation, order: u8) -> Vec<f32> {
+        self.distances(&vein_lines(venation, |of| of <= order))
+    }
+
+    /// The node nearest to a point of the frame (mm).
+    pub(super) fn nearest_node(&self, p: DVec2) -> usize {
+        let pixel = self.frame.pixel_from_leaf(p, self.side);
+        let clamp = |v: f64| (v.max(0.0) as usize).min(self.side - 1);
+        clamp(pixel.y) * self.side + clamp(pixel.x)
+    }
+
+    /// The nodes in the box around a line, `reach` away from it at most (mm).
+    pub(super) fn nodes_near(&self, a: DVec2, b: DVec2, reach: f64) -> Vec<usize> {
+        let [a, b] = [a, b].map(|p| self.frame.pixel_from_leaf(p, self.side).as_vec2());
+        let reach = (reach / self.spacing()) as f32;
+        let capsule = Capsule { a, b, radius_a: reach, radius_b: reach };
+        let [columns, rows] = capsule.pixels(reach, self.side, 0..self.side);
+        rows.flat_map(|y| columns.clone().map(move |x| y * self.side + x)).collect()
+    }
+
+    pub(super) fn leaf(&self, x: usize, y: usize) -> DVec2 {
         self.frame.leaf_from_pixel(DVec2::new(x as f64 + 0.5, y as f64 + 0.5), self.side)
     }
 
-    fn spacing(&self) -> f64 {
+    /// From node to node (mm).
+    pub(super) fn spacing(&self) -> f64 {
         self.frame.side_mm / self.side as f64
     }
 

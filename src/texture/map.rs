@@ -33,6 +33,10 @@ words! {
         VeinOrder = "veinorder",
         /// Foster's bump map.
         Bump = "bump",
+        /// The leaf lit from the front, from behind, and against the light.
+        Preview = "preview",
+        /// The steps of the enhancement of Rodkaew et al. 2002.
+        Enhancement = "enhancement",
     }
 }
 
@@ -84,6 +88,8 @@ pub enum Outside {
     One,
     /// The normal of a plain surface, (128, 128, 255).
     FlatNormal,
+    /// Something to look at: no map of the leaf's own texels.
+    Paper,
 }
 
 impl MapKind {
@@ -118,6 +124,8 @@ impl MapKind {
             Self::VeinMask => "VeinMask",
             Self::VeinOrder => "VeinOrder",
             Self::Bump => "Bump",
+            Self::Preview => "Preview",
+            Self::Enhancement => "Enhancement",
         }
     }
 
@@ -145,6 +153,11 @@ impl MapKind {
             Self::VeinMask => "how much of the texel is vein",
             Self::VeinOrder => "order of the vein: 0 none, 1 primary, 2 secondary …",
             Self::Bump => "height in the red channel, plain blade at 128",
+            Self::Preview => "for people: upper side, lower side, and against the light",
+            Self::Enhancement => {
+                "for people: plain veins; thickened, noise, blur; embossed; inverted; recoloured; \
+                 veins added"
+            }
         }
     }
 
@@ -154,7 +167,9 @@ impl MapKind {
         match self {
             Self::BaseColour | Self::Orm => Channels::Rgba,
             Self::Opacity => Channels::GreyAlpha,
-            Self::Normal | Self::Translucency | Self::Bump => Channels::Rgb,
+            Self::Normal | Self::Translucency | Self::Bump | Self::Preview | Self::Enhancement => {
+                Channels::Rgb
+            }
             _ => Channels::Grey,
         }
     }
@@ -172,9 +187,15 @@ impl MapKind {
     #[must_use]
     pub const fn colour_space(self) -> &'static str {
         match self {
-            Self::BaseColour | Self::Translucency => "sRGB",
+            Self::BaseColour | Self::Translucency | Self::Preview | Self::Enhancement => "sRGB",
             _ => "linear",
         }
+    }
+
+    /// Whether the lower side has one of its own.
+    #[must_use]
+    pub const fn has_back(self) -> bool {
+        !matches!(self, Self::Preview)
     }
 
     /// What it holds where the leaf is not.
@@ -184,6 +205,7 @@ impl MapKind {
             Self::Opacity | Self::Thickness | Self::VeinMask | Self::VeinOrder => Outside::Zero,
             Self::AmbientOcclusion => Outside::One,
             Self::Normal => Outside::FlatNormal,
+            Self::Preview | Self::Enhancement => Outside::Paper,
             _ => Outside::Dilated,
         }
     }
@@ -237,9 +259,26 @@ impl MapSet {
                     | bit(MapKind::AmbientOcclusion)
                     | bit(MapKind::Height)
             }
+            MapKind::Preview => {
+                let shown = [
+                    MapKind::Normal,
+                    MapKind::Height,
+                    MapKind::Roughness,
+                    MapKind::AmbientOcclusion,
+                    MapKind::Translucency,
+                ];
+                shown.into_iter().map(bit).fold(bit(MapKind::Preview), |set, one| set | one)
+            }
+            MapKind::Enhancement => bit(MapKind::Enhancement) | bit(MapKind::VeinMask),
             &other => bit(other),
         };
         Self(maps.iter().map(needs).fold(bit(MapKind::BaseColour), |set, bits| set | bits))
+    }
+
+    /// The set with the plane of one map more.
+    #[must_use]
+    pub const fn with(self, map: MapKind) -> Self {
+        Self(self.0 | (1 << map as u32))
     }
 
     /// Whether the plane of this map is kept; for `Orm` its transmission.

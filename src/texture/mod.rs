@@ -7,33 +7,51 @@
 //! needs 2.6 GB, and 256 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
 //! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
 
+pub mod damage;
 mod dilation;
+mod enhance;
 mod fields;
 mod guide;
+mod lattice;
 pub mod map;
 pub mod normals;
 mod occlusion;
 mod optics;
 pub mod petiole;
 pub mod pigment;
+pub mod plates;
+mod preview;
 pub mod relief;
 mod scene;
 mod side;
+pub mod spectrum;
 mod texel;
 mod tissue;
 
 use crate::margin::Margin;
 use crate::observer::{Observer, Progress};
-use crate::parameter::parameters;
+use crate::parameter::{parameters, words};
+use crate::raster::Grid;
 use crate::seed::Seed;
 use crate::units::TextureFrame;
 use crate::veins::Venation;
+use damage::DamageSpec;
 use map::{MapKind, MapSet};
 use petiole::PetioleSpec;
-use pigment::ColourSpec;
+use pigment::{Albedo, ColourSpec, StateSpec};
 use relief::ReliefSpec;
 use scene::Scene;
 pub use side::SideMaps;
+
+words! {
+    /// How the base colour is made.
+    pub enum Style {
+        /// From the tissue.
+        Tissue = "tissue",
+        /// By the image enhancement of Rodkaew et al. 2002, section 5.
+        Enhanced = "enhanced",
+    }
+}
 
 parameters! {
     /// Size and place of the textures.
@@ -42,6 +60,8 @@ parameters! {
         size_px: count(1024, 16..=16_384, "px"),
         /// Free space around leaf and petiole, as a share of the side.
         gutter: number(0.02, 0.0..=0.4, ""),
+        /// How the base colour is made: `tissue`, or `enhanced` as Rodkaew et al. 2002 do.
+        style: choice(Style, Style::Tissue),
     }
 }
 
@@ -54,6 +74,10 @@ pub struct Paint<'a> {
     pub petiole: &'a PetioleSpec,
     /// Pigments.
     pub colour: &'a ColourSpec,
+    /// Season, maturity and health.
+    pub state: &'a StateSpec,
+    /// What has happened to the leaf.
+    pub damage: &'a DamageSpec,
     /// Heights and surface.
     pub relief: &'a ReliefSpec,
     /// The planes to keep.
@@ -86,6 +110,11 @@ pub fn paint(
         observer.report(Progress { stage: "painting", step, steps: 3, nodes: 0, sources: 0 });
     };
     report(0);
+    let mut paint = *paint;
+    if paint.texture.style == Style::Enhanced {
+        paint.maps = paint.maps.with(MapKind::VeinMask);
+    }
+    let paint = &paint;
     let scene = Scene::new(paint, margin, venation, seed);
     report(1);
     let [mut front, mut back] = scene.paint();
@@ -101,15 +130,40 @@ pub fn paint(
             occlusion::fill(side, per_texel, per_mm);
         }
     }
-    report(3);
-    Ok(TextureSet {
+    let mut set = TextureSet {
         frame: scene.frame(),
         front,
         back,
         height_range_mm: scene.height_range_mm(),
         thickness_range_mm: scene.thickness_range_mm(),
         petiole_end: scene.petiole_end(),
-    })
+        albedo: paint.colour.albedo,
+        rings: scene.rings(),
+    };
+    finish(paint, &mut set, scene.seed);
+    report(3);
+    Ok(set)
+}
+
+/// The pictures that are made from the others.
+fn finish(paint: &Paint<'_>, set: &mut TextureSet, noise: u32) {
+    let per_mm = set.frame.pixels_per_mm(set.front.size()) as f32;
+    let enhanced = paint.texture.style == Style::Enhanced;
+    if enhanced || paint.maps.has(MapKind::Enhancement) {
+        for side in [&mut set.front, &mut set.back] {
+            let steps = enhance::steps(side, per_mm, noise);
+            side.enhancement = enhance::montage(&steps);
+            if enhanced {
+                enhance::replace(side, &steps);
+            }
+            if !paint.maps.has(MapKind::Enhancement) {
+                side.enhancement = Grid::filled(0, 0, [0; 3]);
+            }
+        }
+    }
+    if paint.maps.has(MapKind::Preview) {
+        set.front.preview = preview::lit(&set.front, &set.back);
+    }
 }
 
 /// Why textures could not be painted.
@@ -155,6 +209,11 @@ pub struct TextureSet {
     pub thickness_range_mm: f64,
     /// Where the petiole leaves the stem, its far end (mm).
     pub petiole_end: glam::DVec2,
+    /// What the base colour holds.
+    pub albedo: Albedo,
+    /// The outline of what is left of a damaged blade and of the gaps in it (mm): anticlockwise
+    /// around tissue, clockwise around gaps; none where the blade is whole.
+    pub rings: Vec<Vec<glam::DVec2>>,
 }
 
 impl TextureSet {

@@ -42,7 +42,7 @@ pub(super) struct Stalk {
 
 /// The stalk runs on along the midrib over so many of its radii, thinning: a blade that narrows to
 /// a point would else stand on it with a notch.
-const ROOT_RADII: f64 = 7.0;
+const ROOT_RADII: f64 = 13.0;
 
 /// What the stalk is at one texel.
 #[derive(Debug, Clone, Copy, Default)]
@@ -100,7 +100,7 @@ impl Stalk {
             }
             if walked > 0.0 {
                 points.push(p);
-                radii.push(neck * (1.0 - 0.8 * walked / reach));
+                radii.push(neck * (1.0 - 0.85 * (walked / reach).powi(2)));
                 along.push(-walked);
             }
         }

@@ -1,17 +1,22 @@
-//! Colour of the blade: a base colour and Foster's four colour types, front and back.
+//! What colours a blade: pigments as amounts, or colours chosen by hand; where which of them lies; and
+//! how the leaf's age and health change them.
 //!
-//! Source: Foster, appendix B.3. Departs from it: one blend per texel with the largest weight
-//! w = 1 − distance / reach among the sources in reach (node after node saturates), the front of
-//! the colour made uneven by the tissue; hue on the shorter arc. The schemes not chosen are applied
-//! with colours just off the base, as in the source.
-//!
-//! Pigments only: no light is painted in, but the soft darkening of the green tissue that lines a
-//! vein.
+//! Source of the schemes: Foster, appendix B.3, which spreads a second colour from the veins, the
+//! edges or speckles. Here the schemes spread amounts of pigments ([`amounts`]) or, as in the source,
+//! colours in hue, saturation and value ([`hsv`]).
 
+mod amounts;
+mod hsv;
+mod season;
+
+pub use amounts::{Amounts, PigmentSpec};
+pub(super) use season::{Condition, Course};
+pub use season::{SenescenceSpec, StateSpec};
+
+use super::damage::Injury;
 use super::fields::{Place, VeinAt};
 use super::petiole::StalkAt;
 use super::texel::Shade;
-use super::tissue::smooth;
 use crate::parameter::{parameters, words};
 use crate::raster::color::Tint;
 
@@ -24,6 +29,26 @@ parameters! {
         saturation: number(0.46, 0.0..=1.0, ""),
         /// Value (brightness).
         value: number(0.37, 0.0..=1.0, ""),
+    }
+}
+
+words! {
+    /// What the colours of a blade are made from.
+    pub enum ColourModel {
+        /// Amounts of pigments, by the light they absorb; they age and sicken.
+        Pigments = "pigments",
+        /// Hue, saturation and value as given.
+        Hsv = "hsv",
+    }
+}
+
+words! {
+    /// What a base colour holds.
+    pub enum Albedo {
+        /// All light sent back, as a picture under an even sky shows it.
+        Total = "total",
+        /// The same less the mirror part of the surface, for renderers that add their own gloss.
+        Diffuse = "diffuse",
     }
 }
 
@@ -54,8 +79,14 @@ parameters! {
 }
 
 parameters! {
-    /// Pigments of both sides (Foster, appendix B.3).
+    /// Colours of both sides and how they are spread (Foster, appendix B.3).
     pub struct ColourSpec {
+        /// What colours are made from: `pigments` (amounts; season, maturity and health act on them)
+        /// or `hsv` (the colours of `colour.front` and `colour.back` as they stand).
+        model: choice(ColourModel, ColourModel::Pigments),
+        /// What the base colour holds: `total` (all light sent back) or `diffuse` (less the mirror
+        /// part of the surface).
+        albedo: choice(Albedo, Albedo::Total),
         /// How the second colour is spread: `uniform`, `from-veins`, `from-edges` or `speckled`.
         r#type: choice(ColourType, ColourType::Uniform),
         /// Reach of the colour from a vein, in vein widths.
@@ -68,9 +99,11 @@ parameters! {
         undertone: number(0.12, 0.0..=1.0, ""),
         /// Strength of the fine structure between the veins.
         mottle: number(0.35, 0.0..=1.0, ""),
-        /// Upper side.
+        /// Pigments of the tissue (`colour.model = "pigments"`).
+        pigments: group(PigmentSpec, PigmentSpec::default()),
+        /// Upper side (`colour.model = "hsv"`).
         front: group(SideColour, SideColour::default()),
-        /// Lower side.
+        /// Lower side (`colour.model = "hsv"`).
         back: group(SideColour, SideColour {
             base: Hsv { hue_deg: 88.0, saturation: 0.34, value: 0.52 },
             alternate: Hsv { hue_deg: 62.0, saturation: 0.45, value: 0.62 },
@@ -106,6 +139,137 @@ pub(super) struct Tissue {
     pub grain: f32,
     /// Distance from the base of the blade (mm).
     pub from_base: f32,
+    /// Where this place stands between summer and litter, and how well it is.
+    pub condition: Condition,
+    /// What has been done to it.
+    pub injury: Injury,
+}
+
+/// Colour types that spread something, in the order of the weights.
+const SPREADING: [ColourType; 3] =
+    [ColourType::FromVeins, ColourType::FromEdges, ColourType::Speckled];
+
+impl Tissue {
+    /// Weights of the colours from veins, from edges and from speckles. Where one gives out, tissue
+    /// makes its front uneven; full strength and the reach stay where they are.
+    #[inline]
+    fn weights(&self, per_spread_mm: f32, mottle: f32) -> [f32; 3] {
+        let [_, middle, fine] = self.place.noise;
+        let uneven = |w: f32| {
+            (w + 2.0 * mottle * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0)
+        };
+        [
+            uneven(self.place.from_veins),
+            uneven((1.0 - self.place.edge.max(0.0) * per_spread_mm).max(0.0)),
+            uneven(self.place.speckle),
+        ]
+    }
+
+    /// How far from the larger veins, 0 on one and 1 in the middle of a wide panel.
+    #[inline]
+    fn panel(&self) -> f32 {
+        self.place.major * self.place.major / (self.place.major * self.place.major + 6.0)
+    }
+
+    /// Unevenness in lightness: broad patches, panels paler than the tissue along the larger veins,
+    /// areoles that differ a little, grain.
+    #[inline]
+    fn unevenness(&self) -> f32 {
+        let [broad, middle, fine] = self.place.noise;
+        0.22 * broad
+            + 0.16 * middle
+            + 0.09 * fine
+            + 0.16 * (self.panel() - 0.6)
+            + 0.07 * self.tones[0]
+            + 0.06 * self.tones[1]
+            + 0.10 * self.grain
+    }
+
+    /// How much of a side's veins is seen through its tissue: of the fine nets, here stronger, there
+    /// weaker, and of the grown veins.
+    #[inline]
+    fn veins_seen(&self, face: &Face, mottle: f32) -> [f32; 2] {
+        let [third, fourth, fifth] = face.lines;
+        let fine = self.place.noise[2];
+        let coarse = (third * self.lines[0]).max(fourth * self.lines[1]) * (1.0 + 0.7 * fine);
+        let net = coarse.max(fifth * self.lines[2]) * mottle.sqrt();
+        let shows = self.vein.radius / (self.vein.radius + face.half_shown_mm);
+        [net, self.vein.cover * shows * (0.65 + 0.35 * self.roundness())]
+    }
+
+    /// 1 on the crest of a vein, 0 at its foot.
+    #[inline]
+    fn roundness(&self) -> f32 {
+        (self.vein.dome / self.vein.radius.max(1e-6)).min(1.0)
+    }
+
+    /// How much the tissue lines a vein.
+    #[inline]
+    fn flank(&self) -> f32 {
+        self.vein.groove / (self.vein.groove + 0.12) * (1.0 - self.vein.cover)
+    }
+}
+
+/// The colours of a leaf, ready to mix.
+#[derive(Debug)]
+pub(super) enum Pigments {
+    /// By amounts.
+    Amounts(Box<amounts::Mixer>),
+    /// As chosen, front and back.
+    Chosen(Box<[hsv::Chosen; 2]>),
+}
+
+impl Pigments {
+    /// The petiole colours the midrib within `petiole_reach` of the base (mm).
+    pub(super) fn new(
+        spec: &ColourSpec,
+        state: &StateSpec,
+        petiole: &Hsv,
+        petiole_reach: f32,
+    ) -> Self {
+        match spec.model {
+            ColourModel::Pigments => {
+                Self::Amounts(Box::new(amounts::Mixer::new(spec, state, petiole, petiole_reach)))
+            }
+            ColourModel::Hsv => Self::Chosen(Box::new(
+                [(&spec.front, FRONT), (&spec.back, BACK)]
+                    .map(|(side, face)| hsv::Chosen::new(spec, side, face, petiole, petiole_reach)),
+            )),
+        }
+    }
+
+    /// What is seen of both sides of the blade, and through them.
+    #[inline]
+    pub(super) fn blade(&self, tissue: &Tissue) -> [Shade; 2] {
+        match self {
+            Self::Amounts(mixer) => mixer.blade(tissue),
+            Self::Chosen(sides) => std::array::from_fn(|side| sides[side].blade(tissue)),
+        }
+    }
+
+    /// What is seen of both sides of the petiole; it is the midrib's colour at the blade and browner
+    /// at the stem.
+    #[inline]
+    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> [Shade; 2] {
+        match self {
+            Self::Amounts(mixer) => mixer.stalk(stalk, length, grain),
+            Self::Chosen(sides) => {
+                std::array::from_fn(|side| sides[side].stalk(stalk, length, grain))
+            }
+        }
+    }
+}
+
+/// A colour chosen by hand lets light of its own hue through: yellower, more saturated, and `share`
+/// as bright.
+#[inline]
+fn shade(tint: Tint, share: f32) -> Shade {
+    let through = Tint {
+        hue: tint.hue + 0.25 * (60.0 - tint.hue).clamp(-40.0, 0.0),
+        saturation: (1.45 * tint.saturation).min(1.0),
+        value: tint.value * share,
+    };
+    Shade { reflected: tint.srgb(), through: through.srgb() }
 }
 
 /// How the two sides of a blade differ.
@@ -121,150 +285,3 @@ struct Face {
 
 const FRONT: Face = Face { half_shown_mm: 0.075, lines: [0.42, 0.30, 0.20], flank: 0.20 };
 const BACK: Face = Face { half_shown_mm: 0.030, lines: [0.55, 0.42, 0.26], flank: 0.12 };
-
-/// The colours of one side, ready to mix.
-#[derive(Debug)]
-pub(super) struct Pigments {
-    r#type: ColourType,
-    per_spread_mm: f32,
-    undertone: f32,
-    mottle: f32,
-    face: Face,
-    base: Tint,
-    alternate: Tint,
-    vein: Tint,
-    petiole: Tint,
-    /// Off the base: from veins, from edges, speckled.
-    off: [Tint; 3],
-    /// The midrib takes the petiole's colour within this distance of the base (mm).
-    petiole_reach: f32,
-}
-
-impl Pigments {
-    /// The pigments of the front and the back.
-    pub(super) fn of_sides(spec: &ColourSpec, petiole: &Hsv, petiole_reach: f32) -> [Self; 2] {
-        [(&spec.front, FRONT), (&spec.back, BACK)]
-            .map(|(side, face)| Self::new(spec, side, face, petiole, petiole_reach))
-    }
-
-    fn new(
-        spec: &ColourSpec,
-        side: &SideColour,
-        face: Face,
-        petiole: &Hsv,
-        petiole_reach: f32,
-    ) -> Self {
-        let base = side.base.tint();
-        let off = |hue: f32, saturation: f32, value: f32| Tint {
-            hue: base.hue + hue,
-            saturation: base.saturation * saturation,
-            value: base.value * value,
-        };
-        Self {
-            r#type: spec.r#type,
-            per_spread_mm: 1.0 / (spec.spread_mm as f32).max(1e-6),
-            undertone: spec.undertone as f32,
-            mottle: spec.mottle as f32,
-            face,
-            base,
-            alternate: side.alternate.tint().unrolled(base),
-            vein: side.vein.tint().unrolled(base),
-            petiole: petiole.tint().unrolled(base),
-            // Beside veins deeper and greener, towards the margin thinner and yellower, in spots
-            // browner and darker.
-            off: [off(14.0, 1.05, 0.55), off(-16.0, 0.95, 1.35), off(-30.0, 1.0, 0.72)],
-            petiole_reach,
-        }
-    }
-
-    /// What is seen of the blade, and through it.
-    #[inline]
-    pub(super) fn blade(&self, tissue: &Tissue) -> Shade {
-        let tint = self.tint(tissue);
-        let vein = tissue.vein.cover * tissue.vein.radius / (tissue.vein.radius + 0.12);
-        shade(tint, 0.92 - 0.6 * vein)
-    }
-
-    /// The colour of the blade.
-    #[inline]
-    fn tint(&self, tissue: &Tissue) -> Tint {
-        let Tissue { place, vein, lines, tones, grain, from_base } = tissue;
-        let [broad, middle, fine] = place.noise;
-        let m = self.mottle;
-        // The scheme chosen, and the others faintly. Where a colour gives out, tissue makes its
-        // front uneven; full strength and the reach stay where they are.
-        let uneven =
-            |w: f32| (w + 2.0 * m * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0);
-        let weights = [
-            uneven(place.from_veins),
-            uneven((1.0 - place.edge.max(0.0) * self.per_spread_mm).max(0.0)),
-            uneven(place.speckle),
-        ];
-        let types = [ColourType::FromVeins, ColourType::FromEdges, ColourType::Speckled];
-        let mut tint = self.base;
-        for ((w, off), r#type) in weights.into_iter().zip(self.off).zip(types) {
-            tint = if r#type == self.r#type {
-                tint.towards(self.alternate, w)
-            } else {
-                tint.towards(off, w * self.undertone)
-            };
-        }
-        // Broad patches of greener and yellower tissue; deeper green along the larger veins, paler
-        // in the middle of the panels between them.
-        let panel = place.major * place.major / (place.major * place.major + 6.0);
-        tint.hue += m * (5.0 * broad + 4.0 * middle - 3.0 * panel);
-        tint.saturation *= 1.0 + m * (0.18 * middle - 0.10 * broad + 0.10 * fine);
-        let light = 0.22 * broad
-            + 0.16 * middle
-            + 0.09 * fine
-            + 0.16 * (panel - 0.6)
-            + 0.07 * tones[0]
-            + 0.06 * tones[1]
-            + 0.10 * grain;
-        tint.value *= 1.0 + m * light;
-        // The fine nets, here stronger, there weaker.
-        let [third, fourth, fifth] = self.face.lines;
-        let coarse = (third * lines[0]).max(fourth * lines[1]) * (1.0 + 0.7 * fine);
-        let net = coarse.max(fifth * lines[2]);
-        tint = tint.towards(self.vein, net * m.sqrt());
-        // A thin hardened rim.
-        let rim = 1.0 - smooth(0.05, 0.45, place.edge);
-        tint = tint.towards(self.vein, 0.30 * rim);
-        // Green tissue thickens beside a vein.
-        let flank = vein.groove / (vein.groove + 0.12);
-        tint.value *= 1.0 - self.face.flank * flank * (1.0 - vein.cover);
-        // The vein itself, paler along its crest.
-        let shows = vein.radius / (vein.radius + self.face.half_shown_mm);
-        let round = (vein.dome / vein.radius.max(1e-6)).min(1.0);
-        let mut core = self.vein;
-        core.value *= 0.90 + 0.16 * round + 0.05 * m * (fine + grain);
-        let near = 1.0 - smooth(0.0, self.petiole_reach, *from_base);
-        core = core.towards(self.petiole, 0.5 * near);
-        tint.towards(core, vein.cover * shows * (0.65 + 0.35 * round))
-    }
-
-    /// The colour of the petiole; it is the midrib's at the blade and browner at the stem.
-    #[inline]
-    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Shade {
-        let round = stalk.dome / stalk.radius.max(1e-6);
-        let blade = 1.0 - smooth(0.0, 2.0 * self.petiole_reach, stalk.along);
-        let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));
-        let mut tint = self.petiole.towards(self.vein, 0.5 * blade);
-        tint.hue -= 18.0 * stem;
-        tint.value *=
-            (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.2 * self.mottle * grain);
-        shade(tint, 0.3)
-    }
-}
-
-/// A colour chosen by hand lets light of its own hue through: yellower, more saturated, and `share`
-/// as bright.
-#[inline]
-fn shade(tint: Tint, share: f32) -> Shade {
-    let through = Tint {
-        hue: tint.hue + 0.25 * (60.0 - tint.hue).clamp(-40.0, 0.0),
-        saturation: (1.45 * tint.saturation).min(1.0),
-        value: tint.value * share,
-    };
-    Shade { reflected: tint.srgb(), through: through.srgb() }
-}

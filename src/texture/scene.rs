@@ -9,12 +9,13 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Paint;
+use super::damage::{WoundAt, Wounds};
 use super::fields::{Strokes, midrib};
-use super::guide::{Guide, Reach};
+use super::guide::{Guide, Lattice, Reach};
 use super::map::{MapKind, MapSet};
 use super::optics::{self, Optics};
 use super::petiole::{Stalk, StalkAt};
-use super::pigment::Pigments;
+use super::pigment::{Course, Pigments};
 use super::relief::Relief;
 use super::side::SideMaps;
 use super::texel::{Shade, Texel, Walker};
@@ -36,7 +37,7 @@ const BAND: usize = 32;
 const SLIT_MM: f64 = 0.15;
 
 /// The petiole is at least this share of its own width where it meets the blade.
-const NECK: f64 = 0.62;
+const NECK: f64 = 0.74;
 
 pub(super) struct Scene {
     pub(super) size: usize,
@@ -48,7 +49,9 @@ pub(super) struct Scene {
     guide: Guide,
     stalk: Stalk,
     pub(super) stalk_length: f32,
-    pub(super) pigments: [Pigments; 2],
+    pub(super) pigments: Pigments,
+    pub(super) course: Course,
+    wounds: Option<Wounds>,
     pub(super) relief: Relief,
     pub(super) optics: Optics,
     maps: MapSet,
@@ -104,6 +107,19 @@ impl Scene {
             Capsule { a, b, radius_a: radius, radius_b: radius }
         });
         let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], per_mm as f32);
+        let guide = Guide::new(margin, venation, &frame, size, &reach, tissue);
+        let lattice = Lattice { frame: &frame, side: guide.side() };
+        let wounds =
+            Wounds::new(paint.damage, margin, venation, &guide, &lattice, per_mm as f32, seed);
+        let sun_deg = seed.stream(Stage::Senescence).between(0.0, 360.0);
+        let course = Course::new(
+            &paint.colour.pigments.autumn,
+            paint.state,
+            margin.length_mm(),
+            margin.area_mm2(),
+            sun_deg,
+        );
+        let petiole_reach = 6.0 * neck as f32;
         Self {
             size,
             frame,
@@ -111,9 +127,16 @@ impl Scene {
             outline: margin.outline().iter().map(pixel).collect(),
             slits: slits.collect(),
             strokes: Strokes::new(venation, neck, &frame, size),
-            guide: Guide::new(margin, venation, &frame, size, &reach, tissue),
+            guide,
+            wounds,
+            course,
             stalk_length: paint.petiole.length_mm as f32,
-            pigments: Pigments::of_sides(paint.colour, &paint.petiole.colour, 6.0 * neck as f32),
+            pigments: Pigments::new(
+                paint.colour,
+                paint.state,
+                &paint.petiole.colour,
+                petiole_reach,
+            ),
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
             maps: paint.maps,
@@ -128,6 +151,12 @@ impl Scene {
 
     pub(super) fn petiole_end(&self) -> DVec2 {
         self.stalk.end()
+    }
+
+    /// Outline and gaps of a damaged blade (mm); none where it is whole.
+    pub(super) fn rings(&self) -> Vec<Vec<DVec2>> {
+        let wounds = self.wounds.as_ref();
+        wounds.map_or_else(Vec::new, |wounds| wounds.rings(&self.guide, &self.frame))
     }
 
     /// From the lowest to the highest place that the height maps can show (mm).
@@ -171,10 +200,12 @@ impl Scene {
                 continue;
             }
             let guide = self.guide.row(y);
+            let wounds = self.wounds.as_ref().map(|wounds| wounds.row(y));
             for x in span {
                 let i = line + x;
                 let stalk = stalk.as_ref().map_or(StalkAt::default(), |stalk| stalk[i]);
-                let texel = walker.texel(x, y, guide.at(x), veins[i], cover[i], stalk);
+                let wound = wounds.as_ref().map_or(WoundAt::NONE, |wounds| wounds.at(x));
+                let texel = walker.texel(x, y, guide.at(x), veins[i], (cover[i], wound), stalk);
                 if texel.alpha > 0 {
                     // Mirrored with the picture: what lies right in front lies left behind.
                     self.put(&texel, [(front, i), (back, line + size - 1 - x)]);

@@ -38,6 +38,10 @@ pub struct SideMaps {
     pub vein_order: Grid<u8>,
     /// Foster's bump: red channel, blade at 128.
     pub bump: Grid<u8>,
+    /// Upper side, lower side and against the light, side by side; the lower side has none.
+    pub preview: Grid<[u8; 3]>,
+    /// Six steps of enhancement, three in a row.
+    pub enhancement: Grid<[u8; 3]>,
 }
 
 impl SideMaps {
@@ -60,6 +64,9 @@ impl SideMaps {
             vein_mask: plane(size, maps, MapKind::VeinMask, 0),
             vein_order: plane(size, maps, MapKind::VeinOrder, 0),
             bump: plane(size, maps, MapKind::Bump, 128),
+            // Made from the others at the end.
+            preview: Grid::filled(0, 0, [0; 3]),
+            enhancement: Grid::filled(0, 0, [0; 3]),
         }
     }
 
@@ -72,20 +79,30 @@ impl SideMaps {
     /// Whether this map was painted.
     #[must_use]
     pub fn has(&self, map: MapKind) -> bool {
-        let side = match map {
-            MapKind::BaseColour | MapKind::Opacity => self.base_colour.width(),
-            MapKind::Normal => self.normal.width(),
-            MapKind::Height => self.height.width(),
-            MapKind::Roughness => self.roughness.width(),
-            MapKind::AmbientOcclusion => self.occlusion.width(),
-            MapKind::Orm => self.transmission.width(),
-            MapKind::Translucency => self.translucency.width(),
-            MapKind::Thickness => self.thickness.width(),
-            MapKind::VeinMask => self.vein_mask.width(),
-            MapKind::VeinOrder => self.vein_order.width(),
-            MapKind::Bump => self.bump.width(),
-        };
-        side > 0
+        self.dimensions(map).0 > 0
+    }
+
+    /// Width and height of a map (pixels); 0 for one that was not painted.
+    #[must_use]
+    pub fn dimensions(&self, map: MapKind) -> (usize, usize) {
+        fn of<T>(plane: &Grid<T>) -> (usize, usize) {
+            (plane.width(), plane.height())
+        }
+        match map {
+            MapKind::BaseColour | MapKind::Opacity => of(&self.base_colour),
+            MapKind::Normal => of(&self.normal),
+            MapKind::Height => of(&self.height),
+            MapKind::Roughness => of(&self.roughness),
+            MapKind::AmbientOcclusion => of(&self.occlusion),
+            MapKind::Orm => of(&self.transmission),
+            MapKind::Translucency => of(&self.translucency),
+            MapKind::Thickness => of(&self.thickness),
+            MapKind::VeinMask => of(&self.vein_mask),
+            MapKind::VeinOrder => of(&self.vein_order),
+            MapKind::Bump => of(&self.bump),
+            MapKind::Preview => of(&self.preview),
+            MapKind::Enhancement => of(&self.enhancement),
+        }
     }
 
     /// The bytes of a map, row by row from the top, channels side by side, 16-bit numbers with the
@@ -113,6 +130,8 @@ impl SideMaps {
             MapKind::VeinMask => self.vein_mask.values().to_vec(),
             MapKind::VeinOrder => self.vein_order.values().to_vec(),
             MapKind::Bump => bytes(&self.bump, |&height| [height, 0, 0]),
+            MapKind::Preview => self.preview.values().as_flattened().to_vec(),
+            MapKind::Enhancement => self.enhancement.values().as_flattened().to_vec(),
         }
     }
 

@@ -1,8 +1,9 @@
 //! One texel: everything known of a place put together, and what is painted there.
 
+use super::damage::WoundAt;
 use super::fields::{Place, VeinAt};
 use super::petiole::StalkAt;
-use super::pigment::Tissue;
+use super::pigment::{Condition, Tissue};
 use super::relief::Ground;
 use super::scene::Scene;
 use super::tissue::{self, Net, smooth};
@@ -11,6 +12,9 @@ use crate::raster::coverage::stroke_share;
 
 /// Fibres are longer than wide by the inverse of this.
 const FIBRE_STRETCH: f32 = 0.08;
+
+/// Further than this outside a skeletonised area (mm) nothing of it is seen.
+const FAR_OUTSIDE_MM: f32 = -3.0;
 
 /// Goes along the rows of a band, with the nets' neighbourhoods at hand.
 pub(super) struct Walker<'a> {
@@ -44,7 +48,7 @@ impl<'a> Walker<'a> {
         row: usize,
         place: Place,
         vein: VeinAt,
-        blade: f32,
+        (blade, wound): (f32, WoundAt),
         stalk: StalkAt,
     ) -> Texel<'a> {
         let scene = self.scene;
@@ -76,6 +80,28 @@ impl<'a> Walker<'a> {
             0.0
         };
         let from_base = (x * x + y * y).sqrt();
+        let mut blade = blade * (1.0 - wound.gone);
+        // Of a skeletonised area the veins are left, and whole areoles at its border.
+        let depth = wound.bare + 0.5 * tones[tissue::AREOLE];
+        let bare = (0.5 + 0.5 * depth * scene.per_mm).clamp(0.0, 1.0);
+        let mut injury = wound.injury;
+        if wound.bare > FAR_OUTSIDE_MM && bare > 0.0 {
+            let net = lines[0].max(0.9 * lines[1]).max(0.5 * lines[2]);
+            let kept = (1.6 * vein.cover).max(1.5 * net).min(1.0);
+            blade *= 1.0 - bare * (1.0 - kept);
+            injury.brown = injury.brown.max(0.55 * bare);
+        }
+        let mut tissue = Tissue {
+            place,
+            vein,
+            lines,
+            tones,
+            grain,
+            from_base,
+            condition: Condition::default(),
+            injury,
+        };
+        tissue.condition = scene.course.at(x, y, &tissue);
         Texel {
             scene,
             alpha: byte(1.0 - (1.0 - blade) * (1.0 - stalk.cover)),
@@ -83,7 +109,7 @@ impl<'a> Walker<'a> {
             stalk,
             fibre,
             ground: Ground { place, vein, border, grain },
-            tissue: Tissue { place, vein, lines, tones, grain, from_base },
+            tissue,
         }
     }
 }
@@ -138,10 +164,16 @@ impl Texel<'_> {
         std::array::from_fn(|side| blade[side] + (stalk[side] - blade[side]) * shares[side])
     }
 
+    /// How dry the tissue is, 0–1.
+    #[inline]
+    fn dryness(&self) -> f32 {
+        self.tissue.condition.dryness().max(self.tissue.injury.brown)
+    }
+
     /// Perceptual roughness of both sides.
     #[inline]
     pub(super) fn roughness(&self) -> [f32; 2] {
-        let blade = self.scene.optics.roughness(&self.ground, 0.0);
+        let blade = self.scene.optics.roughness(&self.ground, self.dryness());
         if self.stalk.cover == 0.0 {
             return blade;
         }
@@ -172,16 +204,13 @@ impl Texel<'_> {
     #[inline]
     pub(super) fn colours(&self) -> [Shade; 2] {
         let shares = self.stalk_shares();
-        std::array::from_fn(|side| {
-            let pigments = &self.scene.pigments[side];
-            let mut shade = pigments.blade(&self.tissue);
-            if shares[side] > 0.0 {
-                let length = self.scene.stalk_length;
-                let stalk = pigments.stalk(&self.stalk, length, self.fibre);
-                shade = shade.mixed(stalk, shares[side]);
-            }
-            shade
-        })
+        let pigments = &self.scene.pigments;
+        let blade = pigments.blade(&self.tissue);
+        if shares == [0.0; 2] {
+            return blade;
+        }
+        let stalk = pigments.stalk(&self.stalk, self.scene.stalk_length, self.fibre);
+        std::array::from_fn(|side| blade[side].mixed(stalk[side], shares[side]))
     }
 }
 
@@ -193,8 +222,9 @@ pub(super) struct Shade {
 }
 
 impl Shade {
+    /// From this to `other`.
     #[inline]
-    fn mixed(self, other: Self, share: f32) -> Self {
+    pub(super) fn mixed(self, other: Self, share: f32) -> Self {
         let mix = |a: [f32; 3], b: [f32; 3]| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share);
         Self {
             reflected: mix(self.reflected, other.reflected),

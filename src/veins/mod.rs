@@ -4,6 +4,7 @@
 //! widths, orders and everything after them are shared.
 
 pub mod auxin;
+pub mod bow;
 pub mod chains;
 pub mod flow;
 pub mod graph;
@@ -14,6 +15,7 @@ pub mod particles;
 pub mod planar;
 pub mod relax;
 pub mod smooth;
+pub mod split;
 pub mod widths;
 
 use glam::DVec2;
@@ -24,6 +26,7 @@ use crate::margin::Margin;
 use crate::observer::Observer;
 use crate::parameter::{Kind, Parameters, parameters, words};
 use crate::seed::{Seed, Stage};
+use auxin::{ConvergenceSpec, DensitySpec, PhaseSpec};
 pub use graph::{NodeId, Rank, VeinGraph, VeinKind};
 use guides::GuideSpec;
 use particles::ParticleSpec;
@@ -68,12 +71,34 @@ parameters! {
         node_step_mm: number(0.3, 0.001..=100.0, "mm"),
         /// A source calls veins within this distance only; 0 for no limit.
         attraction_distance_mm: number(0.0, 0.0..=10_000.0, "mm"),
+        /// Closed venation: veins meet only where the way round along other veins is longer than this;
+        /// around 5 and more, no areole is a speck.
+        least_loop: number(2.0, 0.0..=50.0, "kill distances"),
         /// Closed venation: share of the steps in which veins close loops. In the rest they end free, as
         /// in open venation: the finest veinlets of a real leaf.
         closing_share: number(1.0, 0.0..=1.0, ""),
         /// Closed venation, last steps that close no loops: spawn and kill distances there, relative to
         /// those before. Below 1, sources find room inside the loops.
-        veinlet_scale: number(0.7, 0.1..=1.0, ""),
+        veinlet_scale: number(0.7, 0.1..=2.0, ""),
+        /// Closed venation: kill distance in the last steps, relative to that before (no less than half
+        /// a step). Small, and the veinlets reach the middle of what they feed.
+        veinlet_kill: number(0.7, 0.01..=2.0, ""),
+        /// How straight veins come: 0 as their sources pull them, at 1 tips keep most of their heading.
+        straightness: number(0.0, 0.0..=1.0, ""),
+        /// How strongly veins are drawn to the apex: a vein that would leave at a right angle leaves at
+        /// atan(1/pull), 45° for 1.
+        pull: number(0.0, 0.0..=3.0, ""),
+        /// Share of the darts that have a twin on the other side of the midrib; 1 for a leaf whose halves
+        /// mirror each other.
+        symmetry: number(0.0, 0.0..=1.0, ""),
+        /// How far a twin may be off its mirrored place.
+        symmetry_jitter_mm: number(0.0, 0.0..=100.0, "mm"),
+        /// Sources stand far apart at first, so that orders of veins follow each other.
+        phases: group(PhaseSpec, PhaseSpec::default()),
+        /// Points on the margin from which the first veins come.
+        convergence: group(ConvergenceSpec, ConvergenceSpec::default()),
+        /// Where darts fall more or less densely.
+        density: group(DensitySpec, DensitySpec::default()),
         /// Positions of auxin sources in the mature leaf, instead of darts.
         sources_mm: points(),
         /// Radius of the finest veins.
@@ -96,6 +121,9 @@ parameters! {
         relaxation: count(0, 0..=100, "sweeps"),
         /// How far kinks of grown veins are drawn straight; above 0 long segments become curves too.
         smoothing: number(0.0, 0.0..=1.0, ""),
+        /// How far fine veins bow between their junctions: the spread of the height of the bow, as a share
+        /// of its length. 0.1 gives veins 2 hundredths longer than their chords.
+        sinuosity: number(0.0, 0.0..=0.5, ""),
         /// Veins that are laid before auxin takes over.
         guides: group(GuideSpec, GuideSpec::default()),
         /// Particles, for `algorithm = "particles"`.
@@ -303,9 +331,13 @@ pub fn grow_from(
         Algorithm::Particles => return trails(spec, blade, roots, seed, observer),
     };
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
-    let smooth::Smoothed { graph, nodes_after_step } =
-        smooth::smoothed(spec, blade.finished(), graph, grown.nodes_after_step);
+    let (graph, nodes_after_step) =
+        split::split(spec, blade.finished(), graph, grown.nodes_after_step);
+    // Before smoothing: it puts nodes between, and balance asks for junctions only.
     let graph = relax::relaxed(spec, blade.finished(), graph);
+    let smooth::Smoothed { graph, nodes_after_step } =
+        smooth::smoothed(spec, blade.finished(), graph, nodes_after_step);
+    let graph = bow::bowed(spec, blade.finished(), graph, &mut seed.stream(Stage::Bows));
     let (radii, orders) = widths::radii_and_orders(spec, &graph, spec.tip_radius_mm, observer)?;
     Ok(Venation {
         graph,
@@ -332,7 +364,9 @@ fn trails(
     // Every tip is one particle: Murray's law on tips is his law on energy.
     let tip =
         widths::radius(spec.tip_radius_mm, spec.particles.initial_energy, spec.murray_exponent);
-    let graph = relax::relaxed(spec, blade.finished(), flowed.graph);
+    let (graph, _) = split::split(spec, blade.finished(), flowed.graph, Vec::new());
+    let graph = relax::relaxed(spec, blade.finished(), graph);
+    let graph = bow::bowed(spec, blade.finished(), graph, &mut seed.stream(Stage::Bows));
     let (radii, orders) = widths::radii_and_orders(spec, &graph, tip, observer)?;
     let widths = spec.widths;
     Ok(Venation { widths, sources: flowed.particles, ..Venation::new(graph, radii, orders) })
@@ -353,9 +387,16 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         "closing_share" => spec.closing_share,
         "veinlet_scale" => spec.veinlet_scale,
         "smoothing" => spec.smoothing,
+        "least_loop" => spec.least_loop,
+        "veinlet_kill" => spec.veinlet_kill,
+        "sinuosity" => spec.sinuosity,
         "exponent_change" => spec.exponent_change,
         "least_radius_mm" => spec.least_radius_mm,
         "taper" => spec.taper,
+        "straightness" => spec.straightness,
+        "pull" => spec.pull,
+        "symmetry" => spec.symmetry,
+        "symmetry_jitter_mm" => spec.symmetry_jitter_mm,
         "fluctuation" => spec.fluctuation,
         _ => spec.murray_exponent,
     };
@@ -372,6 +413,7 @@ fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         }
     }
     guides::check(&spec.guides)?;
+    auxin::check(spec)?;
     // A vein steps over a source that is nearer than its step; half a step beyond, it must count as
     // reached, or the vein would turn round for ever.
     let least = spec.node_step_mm / 2.0;

@@ -10,9 +10,9 @@ use std::collections::HashSet;
 use glam::DVec2;
 
 use super::VeinSpec;
+use super::chains::{Chains, Edge};
 use super::graph::{NodeId, VeinGraph};
 use super::{orders, planar, widths};
-use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 
@@ -46,16 +46,22 @@ pub fn smoothed(
     if spec.smoothing == 0.0 || graph.is_empty() {
         return Smoothed { graph, nodes_after_step };
     }
-    let cuts = margin.cuts().iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
-    let lines = SegmentIndex::new(polygon::edges(margin.outline()).chain(cuts).collect());
+    let lines = margin.lines();
     let inside = SegmentIndex::of_polygon(margin.outline());
     let blade = Blade { lines, inside };
     let heirs = heirs(&graph, spec);
     let longest = LONG * spec.node_step_mm;
+    let pieces = if spec.sinuosity > 0.0 { least_pieces(&graph) } else { vec![1; graph.len()] };
     let mut stiff = vec![false; graph.len()];
     loop {
-        let positions = low_pass(&graph, &heirs, &blade, &stiff, spec.smoothing);
-        let shape = Shape { positions: &positions, heirs: &heirs, stiff: &stiff, blade: &blade };
+        let positions = low_pass(&graph, &heirs, &blade, &stiff, spec);
+        let shape = Shape {
+            positions: &positions,
+            heirs: &heirs,
+            stiff: &stiff,
+            pieces: &pieces,
+            blade: &blade,
+        };
         let (finer, renumbered) = subdivided(&graph, shape, longest);
         if !stiffen(&mut stiff, &graph, &finer, &renumbered) {
             let count =
@@ -94,6 +100,8 @@ struct Shape<'a> {
     heirs: &'a [Option<NodeId>],
     /// Nodes that stay where they grew; segments between two of them stay straight.
     stiff: &'a [bool],
+    /// The least number of pieces of the segment that ends at each node.
+    pieces: &'a [u8],
     blade: &'a Blade,
 }
 
@@ -114,16 +122,36 @@ fn heirs(graph: &VeinGraph, spec: &VeinSpec) -> Vec<Option<NodeId>> {
     orders::heirs(graph, &orders::by_width(graph, &radii))
 }
 
+/// Pieces to the stretch of vein between two junctions that is to bow.
+const BOWING: usize = 3;
+
+/// For the segment that ends at each node, into how many it must be cut for its vein to bow.
+fn least_pieces(graph: &VeinGraph) -> Vec<u8> {
+    let mut pieces = vec![1; graph.len()];
+    for chain in Chains::of(graph).chains {
+        let least = BOWING.div_ceil(chain.edges.len()) as u8;
+        for edge in chain.edges {
+            if let Edge::Parent(node) = edge {
+                pieces[node as usize] = least;
+            }
+        }
+    }
+    pieces
+}
+
 /// Every node moved towards the middle of its parent and its heir.
 fn low_pass(
     graph: &VeinGraph,
     heirs: &[Option<NodeId>],
     blade: &Blade,
     stiff: &[bool],
-    strength: f64,
+    spec: &VeinSpec,
 ) -> Vec<DVec2> {
     let home = graph.positions();
-    let counts = graph.child_counts();
+    let mut degrees = graph.child_counts();
+    graph.joins().iter().for_each(|&(a, b)| [a, b].iter().for_each(|&i| degrees[i as usize] += 1));
+    // Junctions that are in balance stay.
+    let is_held = |i: usize| spec.relaxation > 0 && degrees[i] > 1;
     let mut farthest = vec![0.0f64; graph.len()];
     for (parent, child) in graph.edges() {
         let long = FARTHEST * home[parent as usize].distance(home[child as usize]);
@@ -137,12 +165,12 @@ fn low_pass(
         for node in 0..graph.len() as NodeId {
             let i = node as usize;
             let (Some(parent), Some(heir)) = (graph.parent(node), heirs[i]) else { continue };
-            if graph.rank(node).is_some() || stiff[i] {
+            if graph.rank(node).is_some() || stiff[i] || is_held(i) {
                 continue;
             }
             let middle = before[parent as usize].midpoint(before[heir as usize]);
             // A branch holds the node that it leaves.
-            let weight = strength * if counts[i] > 1 { 0.25 } else { 0.5 };
+            let weight = spec.smoothing * if degrees[i] > 1 { 0.25 } else { 0.5 };
             let moved = before[i].lerp(middle, weight);
             placed[i] = home[i] + (moved - home[i]).clamp_length_max(farthest[i]);
         }
@@ -226,10 +254,11 @@ fn between(
     parent: NodeId,
     longest: f64,
 ) -> Vec<DVec2> {
-    let Shape { positions, heirs, stiff, blade } = shape;
+    let Shape { positions, heirs, stiff, pieces, blade } = shape;
     let at = |node: NodeId| positions[node as usize];
     let (a, b) = (at(parent), at(node));
-    let pieces = (a.distance(b) / longest).ceil() as usize;
+    let long = (a.distance(b) / longest).ceil() as usize;
+    let pieces = long.max(usize::from(pieces[node as usize]));
     if pieces < 2 {
         return Vec::new();
     }
@@ -249,7 +278,7 @@ fn between(
             + m1 * (t3 - t2)
     };
     // A curve is longer than its chord.
-    let pieces = pieces + usize::from(pieces > 1);
+    let pieces = pieces + usize::from(long > 1);
     let shares = (1..pieces).map(|i| i as f64 / pieces as f64);
     if stiff[parent as usize] && stiff[node as usize] {
         return shares.map(|t| a.lerp(b, t)).collect();
@@ -271,7 +300,8 @@ mod tests {
 
     #[test]
     fn no_segment_stays_long_and_counts_follow() {
-        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let margin = margin::build(&MarginSpec::default(), crate::seed::Seed(1))
+            .expect("the default margin");
         let mut graph = VeinGraph::new();
         let mut tip = graph.add_root(DVec2::new(0.0, 5.0));
         for i in 1..12 {
@@ -299,7 +329,8 @@ mod tests {
 
     #[test]
     fn nothing_changes_without_smoothing() {
-        let margin = margin::build(&MarginSpec::default()).expect("the default margin");
+        let margin = margin::build(&MarginSpec::default(), crate::seed::Seed(1))
+            .expect("the default margin");
         let mut graph = VeinGraph::new();
         let root = graph.add_root(DVec2::new(0.0, 5.0));
         graph.sprout(root, DVec2::new(0.0, 50.0));

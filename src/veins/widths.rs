@@ -25,6 +25,22 @@ pub fn radii_and_orders(
     tip_radius_mm: f64,
     observer: &mut dyn Observer,
 ) -> Result<(Vec<f64>, Vec<u8>), VeinError> {
+    let (mut radii, mut orders) = of_tree(spec, graph, tip_radius_mm);
+    if spec.widths == Widths::Flow {
+        let floor = spec.least_radius_mm.max(tip_radius_mm);
+        radii = flow::radii(graph, &radii, floor, spec.fluctuation, observer)?;
+        orders = orders::by_width(graph, &radii);
+    }
+    if spec.taper > 0.0 {
+        taper(graph, &orders, &mut radii, spec.taper);
+    }
+    radii.iter_mut().for_each(|radius| *radius = radius.max(spec.least_radius_mm));
+    Ok((radii, orders))
+}
+
+/// The same by Murray's law, whatever `veins.widths` says, without taper.
+#[must_use]
+pub fn of_tree(spec: &VeinSpec, graph: &VeinGraph, tip_radius_mm: f64) -> (Vec<f64>, Vec<u8>) {
     let mut radii = murray(graph, tip_radius_mm, spec.murray_exponent);
     let mut orders = orders::by_width(graph, &radii);
     if spec.exponent_change != 0.0 {
@@ -35,16 +51,8 @@ pub fn radii_and_orders(
         radii = murray_by_order(graph, &orders, tip_radius_mm, exponent);
         orders = orders::by_width(graph, &radii);
     }
-    let floor = spec.least_radius_mm.max(tip_radius_mm);
-    if spec.widths == Widths::Flow {
-        radii = flow::radii(graph, &radii, floor, spec.fluctuation, observer)?;
-        orders = orders::by_width(graph, &radii);
-    }
-    if spec.taper > 0.0 {
-        taper(graph, &orders, &mut radii, spec.taper);
-    }
     radii.iter_mut().for_each(|radius| *radius = radius.max(spec.least_radius_mm));
-    Ok((radii, orders))
+    (radii, orders)
 }
 
 /// Radius of the vein at each node (mm); tips have `tip_radius_mm`. Loop-closing edges carry no

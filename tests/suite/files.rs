@@ -125,9 +125,20 @@ fn textures(margin: &Margin) -> TextureSet {
         vein_mask: grid(|i| pixel(i, salt + 10)),
         vein_order: grid(|i| (i % 6) as u8),
         bump: grid(|i| pixel(i, salt + 5)),
+        preview: grid(|i| [pixel(i, salt), 9, 9]),
+        enhancement: grid(|i| [9, pixel(i, salt), 9]),
     };
     let (front, back) = (side(1), side(2));
-    TextureSet { frame, front, back, height_range_mm: 0.75, thickness_range_mm: 1.5, petiole_end }
+    TextureSet {
+        frame,
+        front,
+        back,
+        height_range_mm: 0.75,
+        thickness_range_mm: 1.5,
+        petiole_end,
+        albedo: venation::texture::pigment::Albedo::Total,
+        rings: Vec::new(),
+    }
 }
 
 fn grid<T>(value: impl FnMut(usize) -> T) -> Grid<T> {
@@ -378,8 +389,9 @@ fn the_manifest_tells_the_truth() {
         assert_eq!(record.sha256, hash);
         assert!(!record.meaning.is_empty());
         if name.ends_with(".png") {
-            let colour =
-                ["BaseColor.png", "Translucency.png"].iter().any(|end| name.ends_with(end));
+            let colour = ["BaseColor.png", "Translucency.png", "Preview.png", "Enhancement.png"]
+                .iter()
+                .any(|end| name.ends_with(end));
             assert_eq!(
                 record.colour_space.as_deref(),
                 Some(if colour { "sRGB" } else { "linear" })

@@ -15,7 +15,7 @@ use venation::raster::Grid;
 use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
 
-type Picture = Grid<[u8; 4]>;
+pub(crate) type Picture = Grid<[u8; 4]>;
 
 /// A channel may be off by this much: rounding of the last bit in another build.
 const CHANNEL_TOLERANCE: u8 = 3;
@@ -35,7 +35,7 @@ fn read(path: &Path) -> Option<Picture> {
 }
 
 /// Asserts that a picture is the expected one, or makes it so.
-fn compare(name: &str, made: &Picture) {
+pub(crate) fn compare(name: &str, made: &Picture) {
     let path = golden(name);
     let png = colour_png(made, &Caption::default());
     if std::env::var_os("BLESS").is_some() {
@@ -68,7 +68,7 @@ fn compare(name: &str, made: &Picture) {
     }
 }
 
-fn document(preset: &str, settings: &[&str]) -> Document {
+pub(crate) fn document(preset: &str, settings: &[&str]) -> Document {
     let mut document = presets::find(preset).expect("a preset").document().expect("it parses");
     for setting in settings {
         document.set(setting, "golden").expect("a valid setting");
@@ -76,14 +76,14 @@ fn document(preset: &str, settings: &[&str]) -> Document {
     document
 }
 
-fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
+pub(crate) fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
     let mut document = document.clone();
     document.set(&format!("texture.size_px={size}"), "golden").expect("a size");
     let spec = document.resolve(Seed(seed)).expect("it resolves");
     pipeline::generate(&spec, Seed(seed), &mut Silent).expect("a leaf")
 }
 
-fn panel(picture: Picture, label: &str) -> Panel {
+pub(crate) fn panel(picture: Picture, label: &str) -> Panel {
     Panel { picture, label: label.to_owned(), notes: Vec::new() }
 }
 
@@ -104,7 +104,7 @@ fn heights(side: &venation::texture::SideMaps) -> Picture {
     shown(&side.height, &side.base_colour, |h| [(h >> 8) as u8; 3])
 }
 
-fn sheet(title: &str, panels: &[Panel], columns: usize, panel_px: usize) -> Picture {
+pub(crate) fn sheet(title: &str, panels: &[Panel], columns: usize, panel_px: usize) -> Picture {
     montage::sheet(title, panels, Layout { columns, panel_px })
 }
 
@@ -138,31 +138,71 @@ fn golden_presets_front_and_back() {
 #[test]
 fn golden_colour_types() {
     let types = [("uniform", 1.0), ("from-veins", 1.0), ("from-edges", 8.0), ("speckled", 2.5)];
-    let panels: Vec<Panel> = types
-        .iter()
-        .map(|(word, spread)| {
+    let mut panels = Vec::new();
+    for model in ["pigments", "hsv"] {
+        for (word, spread) in types {
             let settings = [
-                &format!("colour.type={word}")[..],
+                &format!("colour.model={model}")[..],
+                &format!("colour.type={word}"),
                 &format!("colour.spread_mm={spread}"),
                 "colour.vein_spread=5",
                 "colour.speckle_count=160",
             ];
             let leaf = leaf(&document("lilac", &settings), 3, 512);
-            panel(leaf.textures.front.base_colour, word)
-        })
-        .collect();
+            panels.push(panel(leaf.textures.front.base_colour, &format!("{model}, {word}")));
+        }
+    }
     compare("readme_colour", &sheet("colour types", &panels, 4, 384));
 }
 
 #[test]
+fn golden_season_of_a_maple() {
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "maple", "--by", "season", "--size", "512", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_season", &read(&folder.path().join("s.png")).expect("the sheet"));
+}
+
+#[test]
+fn golden_damage_of_an_oak() {
+    let wounds = [
+        "holes=0.15",
+        "margin_bites=0.2",
+        "skeletonise=0.35",
+        "mines=0.5",
+        "spots=0.5",
+        "scorch=0.4",
+        "tears=0.6",
+    ];
+    let panels: Vec<Panel> = wounds
+        .iter()
+        .map(|wound| {
+            let settings = [&format!("damage.{wound}")[..]];
+            let leaf = leaf(&document("oak", &settings), 2, 512);
+            panel(leaf.textures.front.base_colour, wound)
+        })
+        .collect();
+    compare("readme_damage", &sheet("damage", &panels, 4, 384));
+}
+
+#[test]
 fn golden_relief_of_both_sides() {
-    let leaf = leaf(&document("beech", &[]), 2, 512);
+    let leaf = leaf(&document("beech", &["output.maps=height,normal,preview"]), 2, 512);
     let (front, back) = (&leaf.textures.front, &leaf.textures.back);
+    let lit = front.preview.map(|&[r, g, b]| [r, g, b, 255]);
+    let side = lit.height();
+    let view = |panel: usize| {
+        let row = |y: usize| lit.row(y)[panel * side..(panel + 1) * side].to_vec();
+        Grid::from_values(side, side, (0..side).flat_map(row).collect())
+    };
     let panels = [
         panel(heights(front), "front, height"),
         panel(normals(front), "front, normal"),
         panel(heights(back), "back, height"),
         panel(normals(back), "back, normal"),
+        panel(view(0), "front, lit"),
+        panel(view(1), "back, lit"),
+        panel(view(2), "against the light"),
     ];
     compare("readme_relief", &sheet("relief", &panels, 4, 384));
 }
@@ -207,12 +247,26 @@ fn golden_growth_types() {
     let panels: Vec<Panel> = venation::growth::GrowthType::ALL
         .iter()
         .map(|growth| {
-            let settings = [&format!("growth.type={growth}")[..], "growth.start_step=200"];
+            // What growth alone makes of it, as in the papers.
+            let settings = [
+                &format!("growth.type={growth}")[..],
+                "growth.start_step=200",
+                "veins.guides.primary=none",
+                "veins.algorithm=auxin-open",
+            ];
             let leaf = leaf(&document("lilac", &settings), 1, 512);
             panel(leaf.textures.back.base_colour, growth.word())
         })
         .collect();
     compare("readme_growth", &sheet("growth types, seen from below", &panels, 5, 384));
+}
+
+#[test]
+fn golden_veins_from_growth_alone() {
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "beech", "--by", "emergence", "--size", "768", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_emergence", &read(&folder.path().join("s.png")).expect("the sheet"));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use venation::veins::guides::SecondaryType;
 use venation::veins::{self, NodeId, VeinKind, Venation};
 
 fn grown(spec: &LeafSpec, seed: u64) -> (GrowingBlade, Venation) {
-    let margin = margin::build(&spec.margin).expect("a margin");
+    let margin = margin::build(&spec.margin, Seed(seed)).expect("a margin");
     let blade = GrowingBlade::new(margin, &spec.growth).expect("it grows");
     let venation = veins::grow(&spec.veins, &blade, Seed(seed), &mut Silent).expect("veins");
     (blade, venation)

@@ -2,12 +2,16 @@
 
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod closed; // closed venation: loops that close, against the same reference
+mod emergence; // straight, symmetric, ordered veins from growth alone
 mod files; // what is written, read back by independent readers
 mod golden; // expected pictures, which are also the README's
 mod guides; // veins laid by architecture, in every preset
 mod imports; // outlines from files, odd and broken ones too
 mod inspect; // measures of leaves, and graphs for other programs
 mod layers; // who may use whom
+mod margins; // teeth and instances of every preset, from outside
+mod material; // light, seasons, films and wounds
+mod morph; // one leaf turning into another
 mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth

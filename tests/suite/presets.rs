@@ -13,7 +13,8 @@ fn every_preset_is_called_after_its_file_and_gives_a_margin() {
         let spec = document.resolve(Seed(1)).expect("presets resolve");
         assert_eq!(spec.name, preset.name);
         assert!(!spec.title.is_empty(), "{} has no title", preset.name);
-        let margin = margin::build(&spec.margin).unwrap_or_else(|e| panic!("{}: {e}", preset.name));
+        let margin =
+            margin::build(&spec.margin, Seed(1)).unwrap_or_else(|e| panic!("{}: {e}", preset.name));
         assert_eq!(margin.check(), None);
     }
 }
@@ -48,7 +49,7 @@ proptest! {
     fn any_seed_of_any_preset_gives_a_valid_margin(seed: u64, index in 0..PRESETS.len()) {
         let preset = &PRESETS[index];
         let spec = preset.document().unwrap().resolve(Seed(seed)).unwrap();
-        let margin = margin::build(&spec.margin).map_err(|e| {
+        let margin = margin::build(&spec.margin, Seed(seed)).map_err(|e| {
             TestCaseError::fail(format!("{} seed {seed}: {e}", preset.name))
         })?;
         prop_assert_eq!(margin.check(), None);

@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 use venation::geometry::scatter::PolygonScatter;
+use venation::geometry::z_order::z_order;
 use venation::growth::{self, GrowingBlade};
 use venation::seed::Rng;
 use venation::veins::{Algorithm, VeinSpec};
@@ -135,24 +136,94 @@ impl World<'_> {
         best
     }
 
-    fn dart(&self, scatter: &PolygonScatter, rng: &mut Rng, sources: &[DVec2]) -> Option<DVec2> {
+    /// Share of the steps made so far.
+    fn age(&self) -> f64 {
+        let steps = self.blade.steps();
+        (self.step - steps.start()) as f64 / steps.count() as f64
+    }
+
+    /// How much farther apart sources stand than in the end.
+    fn coarseness(&self) -> f64 {
+        let phases = &self.spec.phases;
+        let left = ((phases.settle_at - self.age()) / phases.settle_at).max(0.0);
+        libm::pow(phases.coarseness, left)
+    }
+
+    /// What a dart falls too near to: at most so far (squared).
+    fn room2(&self, mm: f64) -> f64 {
+        let length = self.length(mm * self.crowding()) * self.coarseness();
+        length * length
+    }
+
+    /// Whether there is room for a source.
+    fn is_free(&self, p: DVec2, sources: &[DVec2]) -> bool {
+        let far = |q: &DVec2, mm: f64| self.distance2(p, *q) >= self.room2(mm);
+        sources.iter().all(|q| far(q, self.spec.source_spawn_distance_mm))
+            && self.positions.iter().all(|q| far(q, self.spec.vein_spawn_distance_mm))
+    }
+
+    /// One dart or a pair; how many were thrown, and where they fall.
+    fn darts(&self, scatter: &PolygonScatter, rng: &mut Rng) -> (u64, Vec<DVec2>) {
         let (u, v) = (rng.unit(), rng.unit());
-        let mature = scatter.point(u, v);
+        let p = scatter.point(u, v);
         if self.blade.is_warped() && self.step < self.blade.mature_step() {
             // Evenly over the leaf as it is.
             let most = self.blade.greatest_area_scale(self.step);
-            if rng.unit() * most >= self.blade.area_scale(mature, self.step) {
-                return None;
+            if rng.unit() * most >= self.blade.area_scale(p, self.step) {
+                return (1, Vec::new());
             }
         }
-        let p = self.shown(mature);
-        let far = |q: &DVec2, mm: f64| {
-            let length = self.length(mm * self.crowding());
-            self.distance2(p, *q) >= length * length
-        };
-        let free = sources.iter().all(|q| far(q, self.spec.source_spawn_distance_mm))
-            && self.positions.iter().all(|q| far(q, self.spec.vein_spawn_distance_mm));
-        free.then_some(p)
+        if self.spec.symmetry > 0.0 {
+            let (keeps, turn, out) = (rng.unit(), rng.unit(), rng.unit());
+            if keeps < self.spec.symmetry {
+                let angle = std::f64::consts::TAU * turn;
+                let off = DVec2::new(libm::cos(angle), libm::sin(angle));
+                let twin = DVec2::new(-p.x, p.y) + off * (self.spec.symmetry_jitter_mm * out);
+                let apart2 = self.distance2(self.shown(p), self.shown(twin));
+                let on_midrib = DVec2::new(0.0, p.y);
+                let (thrown, mut places) =
+                    if apart2 < self.room2(self.spec.source_spawn_distance_mm) {
+                        (1, vec![on_midrib])
+                    } else if self.blade.covers(twin) {
+                        (2, vec![p, twin])
+                    } else {
+                        (1, vec![p])
+                    };
+                places.retain(|p| self.blade.covers(*p));
+                return (thrown, places.into_iter().map(|p| self.shown(p)).collect());
+            }
+        }
+        (1, vec![self.shown(p)])
+    }
+
+    /// How much of the settings still steers veins.
+    fn share_of_steering(&self) -> f64 {
+        match self.spec.phases.coarseness {
+            1.0 => 1.0,
+            most => libm::log(self.coarseness()) / libm::log(most),
+        }
+    }
+
+    /// Where a vein goes that its callers pull along a unit vector.
+    fn steered(&self, node: usize, towards: DVec2) -> DVec2 {
+        let share = self.share_of_steering();
+        let mut way = towards;
+        let pulled = towards + DVec2::Y * (self.spec.pull * share);
+        if self.spec.pull * share > 0.0 && pulled.normalize_or_zero().dot(towards) > 0.5 {
+            way = pulled.normalize();
+        }
+        let ends = self.edges().into_iter().filter(|&(a, b)| a == node || b == node).count();
+        match self.parents[node] {
+            Some(parent) if ends < 2 => {
+                let heading = self.way(self.positions[parent], self.positions[node]);
+                let heading = heading.normalize_or_zero();
+                if heading.dot(way) < 0.5 {
+                    return way;
+                }
+                way.lerp(heading, 0.85 * (self.spec.straightness * share)).normalize()
+            }
+            _ => way,
+        }
     }
 
     /// Makes a child, if there is room; `None` when the margin is in the way.
@@ -178,6 +249,26 @@ impl World<'_> {
         Some(())
     }
 
+    /// Throws so many darts, each with room among those that are there.
+    fn throw_at_once(
+        &self,
+        darts: f64,
+        scatter: &PolygonScatter,
+        rng: &mut Rng,
+        places: &mut Vec<DVec2>,
+    ) {
+        let mut left = darts as u64;
+        while left > 0 {
+            let (thrown, found) = self.darts(scatter, rng);
+            left = left.saturating_sub(thrown);
+            for p in found {
+                if self.is_free(p, places) {
+                    places.push(p);
+                }
+            }
+        }
+    }
+
     fn extend(&mut self, node: usize, callers: &[DVec2]) {
         let from = self.positions[node];
         let unit = |p: DVec2| {
@@ -193,7 +284,17 @@ impl World<'_> {
             first += 1;
         }
         let pull = sum(&units[first..]);
-        let blocked = pull.length() > 0.0 && self.sprout(node, pull / pull.length()).is_none();
+        if pull.length() == 0.0 {
+            return;
+        }
+        let is_steered = self.spec.straightness > 0.0 || self.spec.pull > 0.0;
+        if is_steered && self.share_of_steering() > 0.0 {
+            let towards = self.steered(node, pull / pull.length());
+            if self.sprout(node, towards).is_some() {
+                return;
+            }
+        }
+        let blocked = self.sprout(node, pull / pull.length()).is_none();
         if blocked && units.len() - first > 1 {
             let mut nearest = 0;
             for i in 1..callers.len() {
@@ -236,13 +337,11 @@ pub(crate) fn grow(
     world.positions.push(root);
     let scatter = PolygonScatter::new(blade.mature().outline());
     let given = !spec.sources_mm.is_empty();
-    let darts_fall = !given && blade.carries_tissue();
+    let darts_fall = !given && (blade.carries_tissue() || spec.phases.coarseness > 1.0);
     let mut waiting: Vec<DVec2> =
         spec.sources_mm.iter().map(|p| DVec2::from(*p)).filter(|p| blade.covers(*p)).collect();
     if !given && !darts_fall {
-        for _ in 0..(spec.spawn_rate * closing_steps as f64) as u64 {
-            waiting.extend(world.dart(&scatter, rng, &waiting));
-        }
+        world.throw_at_once(spec.spawn_rate * closing_steps as f64, &scatter, rng, &mut waiting);
     }
     // Where tissue stands still, a dart keeps its room for ever.
     let thrown = waiting.clone();
@@ -265,26 +364,29 @@ pub(crate) fn grow(
             world.closing = false;
             if !given && !darts_fall {
                 let mut spaced: Vec<DVec2> = thrown.clone();
-                for _ in 0..(spec.spawn_rate * (steps - closing_steps) as f64) as u64 {
-                    if let Some(p) = world.dart(&scatter, rng, &spaced) {
-                        waiting.push(p);
-                        spaced.push(p);
-                    }
-                }
+                let left = spec.spawn_rate * (steps - closing_steps) as f64;
+                world.throw_at_once(left, &scatter, rng, &mut spaced);
+                waiting.extend(&spaced[thrown.len()..]);
             }
         }
         // Seed sources: those the margin has passed, and this step's darts.
-        let (born, rest): (Vec<DVec2>, Vec<DVec2>) =
+        let (mut born, rest): (Vec<DVec2>, Vec<DVec2>) =
             waiting.into_iter().partition(|&p| blade.is_inside(p, step));
         waiting = rest;
+        // They call in an order, and are born in that of place.
+        born.sort_by_key(|&p| z_order(blade.mature().bounds(), p));
         sources.extend(born.into_iter().map(|p| Source::new(world.shown(p))));
         if darts_fall {
             fraction += spec.spawn_rate * blade.greatest_area_scale(step);
             while fraction >= 1.0 {
-                fraction -= 1.0;
-                let places: Vec<DVec2> = sources.iter().map(|source| source.place).collect();
-                let dart = world.dart(&scatter, rng, &places).filter(|p| world.inside(*p));
-                sources.extend(dart.map(Source::new));
+                let (thrown, places) = world.darts(&scatter, rng);
+                fraction -= thrown as f64;
+                for p in places {
+                    let others: Vec<DVec2> = sources.iter().map(|source| source.place).collect();
+                    if world.inside(p) && world.is_free(p, &others) {
+                        sources.push(Source::new(p));
+                    }
+                }
             }
         }
         // Call.

@@ -7,9 +7,10 @@ use venation::margin::Margin;
 use venation::observer::Silent;
 use venation::raster::Grid;
 use venation::seed::Seed;
-use venation::texture::map::MapSet;
+use venation::texture::damage::DamageSpec;
+use venation::texture::map::{MapKind, MapSet};
 use venation::texture::petiole::PetioleSpec;
-use venation::texture::pigment::{ColourSpec, ColourType, Hsv};
+use venation::texture::pigment::{ColourModel, ColourSpec, ColourType, Hsv, StateSpec};
 use venation::texture::relief::ReliefSpec;
 use venation::texture::{Paint, SideMaps, TextureSet, TextureSpec, paint};
 use venation::veins::{VeinGraph, Venation};
@@ -17,15 +18,17 @@ use venation::veins::{VeinGraph, Venation};
 use crate::sample_leaf;
 
 #[derive(Clone, Default)]
-struct Settings {
-    texture: TextureSpec,
-    petiole: PetioleSpec,
-    colour: ColourSpec,
-    relief: ReliefSpec,
+pub(crate) struct Settings {
+    pub(crate) texture: TextureSpec,
+    pub(crate) petiole: PetioleSpec,
+    pub(crate) colour: ColourSpec,
+    pub(crate) state: StateSpec,
+    pub(crate) damage: DamageSpec,
+    pub(crate) relief: ReliefSpec,
 }
 
 impl Settings {
-    fn of_size(size_px: u64) -> Self {
+    pub(crate) fn of_size(size_px: u64) -> Self {
         Self { texture: TextureSpec { size_px, ..TextureSpec::default() }, ..Self::default() }
     }
 
@@ -34,13 +37,15 @@ impl Settings {
             texture: &self.texture,
             petiole: &self.petiole,
             colour: &self.colour,
+            state: &self.state,
+            damage: &self.damage,
             relief: &self.relief,
             maps: MapSet::ALL,
             default_speckles: 6,
         }
     }
 
-    fn painted(&self, margin: &Margin, veins: &Venation) -> TextureSet {
+    pub(crate) fn painted(&self, margin: &Margin, veins: &Venation) -> TextureSet {
         paint(&self.as_paint(), margin, veins, Seed(3), &mut Silent).expect("a leaf can be painted")
     }
 }
@@ -65,6 +70,26 @@ fn every_guarantee_holds_on_a_sample_leaf() {
     let margin = sample_leaf::ovate(60.0);
     let set = Settings::of_size(256).painted(&margin, &sample_leaf::veins(&margin));
     assert_eq!(set.check(), None);
+}
+
+#[test]
+fn each_map_can_be_had_alone_and_is_the_same() {
+    let margin = sample_leaf::ovate(60.0);
+    let veins = sample_leaf::veins(&margin);
+    let settings = Settings::of_size(64);
+    let all = settings.painted(&margin, &veins);
+    for &map in MapKind::ALL {
+        let mut alone = settings.as_paint();
+        alone.maps = MapSet::of(&[map]);
+        let set = paint(&alone, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
+        assert_eq!(set.check(), None, "{map}");
+        for (alone, all) in [(&set.front, &all.front), (&set.back, &all.back)] {
+            let (width, height) = alone.dimensions(map);
+            let bytes = map.channels().count() * usize::from(map.bits() / 8) * width * height;
+            assert_eq!(alone.samples(map).len(), bytes, "{map}");
+            assert!(alone.samples(map) == all.samples(map), "{map}");
+        }
+    }
 }
 
 #[test]
@@ -172,6 +197,7 @@ fn edges_take_the_second_colour_along_the_shorter_arc() {
     let margin = sample_leaf::ovate(60.0);
     let mut settings = Settings::of_size(512);
     let colour = &mut settings.colour;
+    colour.model = ColourModel::Hsv;
     (colour.undertone, colour.mottle, colour.spread_mm) = (0.0, 0.0, 10.0);
     colour.r#type = ColourType::FromEdges;
     colour.front.base = Hsv { hue_deg: 20.0, saturation: 0.8, value: 0.5 };

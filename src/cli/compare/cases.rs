@@ -1,10 +1,12 @@
 //! What differs from panel to panel: one case each, in the order of the sheet.
 
 use venation::error::Error;
-use venation::growth::GrowthType;
+use venation::growth::{GrowthType, RatePattern};
 use venation::margin::{self, shapes};
+use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
+use venation::veins::guides::PrimaryType;
 use venation::veins::particles::patterns::Pattern;
 
 /// What differs from panel to panel.
@@ -18,6 +20,21 @@ pub(super) enum By {
     Algorithm,
     /// Shapes of unilobed blades: the fifty types and twelve names (Garg 2011, tables 4.2 and 4.3).
     Shape,
+    /// One leaf from spring to litter: front, back and against the light; `--frames N` for a film.
+    Season,
+    /// What makes veins straight, symmetric and ordered where growth alone makes them.
+    Emergence,
+}
+
+/// One thing more from panel to panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Emergence {
+    Plain,
+    Straight,
+    Symmetric,
+    Convergence,
+    Phases,
+    Basipetal,
 }
 
 /// What one panel shows.
@@ -28,7 +45,66 @@ pub(super) enum Case {
     Algorithm(Algorithm),
     /// By its place among all shapes.
     Shape(usize),
+    Emergence(Emergence),
 }
+
+impl Emergence {
+    const ALL: [Self; 6] = [
+        Self::Plain,
+        Self::Straight,
+        Self::Symmetric,
+        Self::Convergence,
+        Self::Phases,
+        Self::Basipetal,
+    ];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Plain => "growth alone",
+            Self::Straight => "+ straightness",
+            Self::Symmetric => "+ symmetry",
+            Self::Convergence => "+ convergence",
+            Self::Phases => "+ phases",
+            Self::Basipetal => "+ basipetal",
+        }
+    }
+
+    /// Settings that the leaf does not have itself.
+    fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
+        // Of its width alone: whatever the teeth are.
+        let width = margin::build(&spec.margin, Seed(0))?.bounds().size().x;
+        let young = spec.growth.start_step as f64 / spec.growth.total_steps as f64;
+        let has = |more: Self| self as u8 >= more as u8;
+        if has(Self::Basipetal) {
+            spec.growth.r#type = GrowthType::NonUniform;
+            spec.growth.rates.pattern = RatePattern::Basipetal;
+        }
+        let veins = &mut spec.veins;
+        veins.guides.primary = PrimaryType::None;
+        let or = |value: f64, default: f64| if value == 0.0 { default } else { value };
+        veins.straightness =
+            if has(Self::Straight) { or(veins.straightness, STRAIGHTNESS) } else { 0.0 };
+        veins.symmetry = if has(Self::Symmetric) { or(veins.symmetry, SYMMETRY) } else { 0.0 };
+        if !has(Self::Phases) {
+            veins.phases.coarseness = 1.0;
+        } else if veins.phases.coarseness == 1.0 {
+            veins.phases.coarseness = COARSENESS;
+        }
+        let spacing = SPACING * width * young;
+        veins.convergence.spacing_mm =
+            if has(Self::Convergence) { or(veins.convergence.spacing_mm, spacing) } else { 0.0 };
+        Ok(())
+    }
+}
+
+/// What `--by emergence` takes where a leaf says nothing: veins as straight and as alike on both sides
+/// as most leaves', eight times as far apart at first.
+const STRAIGHTNESS: f64 = 0.7;
+const SYMMETRY: f64 = 0.8;
+const COARSENESS: f64 = 8.0;
+
+/// Between convergence points, in widths of the blade when veins begin.
+const SPACING: f64 = 0.3;
 
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
 const SCATTERS: [(u64, u64); 4] = [(3, 1378), (5, 500), (7, 254), (10, 125)];
@@ -51,6 +127,8 @@ impl By {
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
             Self::Shape => "shape",
+            Self::Season => "season",
+            Self::Emergence => "emergence",
         }
     }
 
@@ -60,6 +138,8 @@ impl By {
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
             Self::Shape => "shapes of unilobed blades: waist-base-apex, and botanists' names",
+            Self::Season => "season",
+            Self::Emergence => "veins from growth alone",
         }
     }
 
@@ -72,6 +152,9 @@ impl By {
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
             Self::Shape => (0..shapes::all().len()).map(Case::Shape).collect(),
+            // The year has a sheet of its own: the leaf grows once.
+            Self::Season => Vec::new(),
+            Self::Emergence => Emergence::ALL.map(Case::Emergence).to_vec(),
         }
     }
 
@@ -79,7 +162,7 @@ impl By {
     pub(super) fn columns(self) -> usize {
         match self {
             Self::Scatter => Pattern::ALL.len(),
-            Self::Growth | Self::Algorithm => self.cases().len(),
+            Self::Growth | Self::Algorithm | Self::Season | Self::Emergence => self.cases().len(),
             // The types of one waist fill two rows.
             Self::Shape => 8,
         }
@@ -93,6 +176,7 @@ impl Case {
             Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
             Self::Algorithm(algorithm) => algorithm.to_string(),
             Self::Shape(index) => shapes::all().swap_remove(index).name,
+            Self::Emergence(emergence) => emergence.word().to_owned(),
         }
     }
 
@@ -105,9 +189,10 @@ impl Case {
                 spec.margin = spec.margin.shaped(&shapes::all()[index]);
                 spec.texture.size_px = spec.texture.size_px.min(SHAPE_PX);
             }
+            Self::Emergence(emergence) => emergence.apply(spec)?,
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.
-                let pixel = (margin::build(&spec.margin)?.area_mm2() / IVY_PX2).sqrt();
+                let pixel = (margin::build(&spec.margin, Seed(1))?.area_mm2() / IVY_PX2).sqrt();
                 spec.veins.algorithm = Algorithm::Particles;
                 let particles = &mut spec.veins.particles;
                 particles.pattern = pattern;

@@ -54,17 +54,27 @@ words! {
     }
 }
 
+words! {
+    /// What the waists of a lobe are measured along.
+    pub enum FlankKind {
+        /// The vein of the lobe, as in the thesis.
+        Vein = "vein",
+        /// The line from where the half begins (base or valley) to the tip, in its lengths.
+        Chord = "chord",
+    }
+}
+
 parameters! {
     /// One half of a lobe, on one side of its vein.
     pub struct HalfLobe {
-        /// Half width at the widest place.
-        waist_x: number(0.3, 0.005..=3.0, "lobe lengths"),
+        /// Half width at the widest place; below 0 where the half is hollow.
+        waist_x: number(0.3, -1.0..=3.0, "lobe lengths"),
         /// How far along the vein that is.
         waist_y: number(0.5, 0.02..=0.98, "lobe lengths"),
         /// Angle between vein and margin at the lobe's base; of no effect above a set valley.
         base_angle_deg: number(60.0, -180.0..=180.0, "deg"),
         /// Angle between vein and margin at the tip: 90 for a round one.
-        apex_angle_deg: number(40.0, 0.0..=150.0, "deg"),
+        apex_angle_deg: number(40.0, -180.0..=180.0, "deg"),
     }
 }
 
@@ -88,20 +98,26 @@ parameters! {
         upper: group(HalfLobe, HalfLobe::default()),
         /// Tension of its margin: 1 as in the thesis, less for straighter flanks.
         tension: number(1.0, 0.05..=1.5, ""),
+        /// What its waists are measured along: its vein, or the line from base or valley to the tip.
+        flanks: choice(FlankKind, FlankKind::Vein),
         /// The valley above it: `meet`, where the two lobes meet, or `set`, at the place given.
         valley: choice(ValleyKind, ValleyKind::Meet),
         /// How far a set valley lies from where the vein begins.
-        valley_distance: number(0.5, 0.02..=1.5, "lobe lengths"),
+        valley_distance: number(0.5, 0.02..=3.0, "lobe lengths"),
         /// Angle at that place between the vein and the way to the valley, towards the apex.
-        valley_angle_deg: number(22.0, -30.0..=150.0, "deg"),
+        valley_angle_deg: number(22.0, -180.0..=180.0, "deg"),
         /// Angle between the way to the valley and the margin, on this lobe's side of the valley:
         /// 0 sharp, 90 smooth.
-        valley_lower_deg: number(50.0, 0.0..=180.0, "deg"),
+        valley_lower_deg: number(50.0, -180.0..=180.0, "deg"),
         /// The same on the next lobe's side.
-        valley_upper_deg: number(50.0, 0.0..=180.0, "deg"),
+        valley_upper_deg: number(50.0, -180.0..=180.0, "deg"),
         /// Angle between midrib and margin at the apex, where no lobe stands there and this is the
         /// last of its side.
-        notch_angle_deg: number(60.0, 0.0..=180.0, "deg"),
+        notch_angle_deg: number(60.0, -180.0..=180.0, "deg"),
+        /// Teeth on this lobe, times what `margin.teeth` asks for; 0 for none.
+        teeth_count: number(1.0, 0.0..=10.0, ""),
+        /// Height of the teeth on this lobe, times what `margin.teeth` asks for.
+        teeth_depth: number(1.0, 0.0..=5.0, ""),
     }
 }
 

@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use super::{HalfLobe, LobeRecord, LobeSide, STRIP, STRIP_ANGLE_DEG, ValleyKind, Waypoint};
+use super::{
+    FlankKind, HalfLobe, LobeRecord, LobeSide, STRIP, STRIP_ANGLE_DEG, ValleyKind, Waypoint,
+};
 use crate::units::Angle;
 
 /// One half of a lobe: numbers of [`HalfLobe`] with the sines and cosines taken.
@@ -25,6 +27,8 @@ pub(super) struct Lobe {
     pub(super) upper: Half,
     /// How the margin leaves the set valley above: towards this lobe and towards the next.
     pub(super) valley: Option<(Waypoint, Waypoint)>,
+    /// Waists are measured from the start of the half to the tip, not along the vein.
+    by_chord: bool,
     direction: DVec2,
     length: f64,
     /// Half of what the vein turns (radians).
@@ -76,6 +80,7 @@ impl Lobe {
             // The halves of a lobe at the apex are both taken as right ones.
             upper: Half::new(&record.upper, if apex { 1.0 } else { -1.0 }),
             valley,
+            by_chord: record.flanks == FlankKind::Chord,
             direction: along,
             length,
             bend: if apex { 0.0 } else { Angle::from_degrees(record.bend_deg).radians() / 2.0 },
@@ -131,13 +136,27 @@ impl Lobe {
     /// The waypoints of a half from `start` to the tip; the waist only when it lies between them
     /// (section 6.3).
     pub(super) fn waypoints(&self, list: &mut Vec<Waypoint>, half: Half, start: Waypoint) {
+        if self.by_chord {
+            let chord = self.tip() - start.at;
+            let out = -chord.perp() * half.side;
+            let at = start.at + chord * half.waist.y + out * half.waist.x;
+            list.push(start);
+            list.push(Waypoint { at, towards: chord.normalize_or(self.direction) });
+            list.push(self.arriving(half));
+            return;
+        }
         let reached = (start.at - self.origin).dot(self.direction) / self.length;
         list.push(start);
         if reached < half.waist.y {
             let (at, towards) = self.frame(half.waist.x, half.waist.y, half.side);
             list.push(Waypoint { at, towards });
         }
+        list.push(self.arriving(half));
+    }
+
+    /// How the margin of a half reaches the tip.
+    fn arriving(&self, half: Half) -> Waypoint {
         let (_, ahead) = self.frame(0.0, 1.0, half.side);
-        list.push(Waypoint { at: self.tip(), towards: turned(ahead, half.apex, -half.side) });
+        Waypoint { at: self.tip(), towards: turned(ahead, half.apex, -half.side) }
     }
 }

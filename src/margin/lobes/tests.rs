@@ -1,6 +1,6 @@
 use super::shorthand::{LobeRow, LobingSpec};
 use super::*;
-use crate::margin::{Margin, MarginKind, MarginSpec, build};
+use crate::margin::{Margin, MarginKind, MarginSpec, entire};
 use crate::seed::{Rng, Seed, Stage};
 
 fn lobed(lobing: LobingSpec) -> MarginSpec {
@@ -77,7 +77,7 @@ fn twenty_six_numbers_expand_to_the_record_of_every_lobe() {
         assert!((record.length - (0.35 - i * 0.05 / 3.0)).abs() < 1e-12);
     }
     let spec = MarginSpec { lobe: records, ..lobed(LobingSpec::default()) };
-    assert_eq!(build(&spec).unwrap(), build(&lobed(pinnate(9))).unwrap());
+    assert_eq!(entire(&spec).unwrap(), entire(&lobed(pinnate(9))).unwrap());
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn every_lobe_has_its_tip_and_every_pair_a_valley() {
         (palmate(2), true),
     ] {
         let count = lobing.count as usize;
-        let margin = build(&lobed(lobing.clone())).unwrap();
+        let margin = entire(&lobed(lobing.clone())).unwrap();
         assert_eq!(margin.check(), None, "{count}");
         assert_eq!(tips(&margin).len(), count, "{count}");
         assert_eq!(valleys(&margin).len(), count - 1, "{count}");
@@ -124,7 +124,7 @@ fn a_set_valley_lies_where_equation_6_10_puts_it_with_its_tangents() {
         ..pinnate(9)
     };
     let records = lobing.records().unwrap();
-    let margin = build(&lobed(lobing)).unwrap();
+    let margin = entire(&lobed(lobing)).unwrap();
     for (i, record) in records[..4].iter().enumerate() {
         let (angle, turn) = (record.angle_deg.to_radians(), 20.0_f64.to_radians());
         let vein = DVec2::new(angle.sin(), angle.cos()) * record.length;
@@ -155,7 +155,7 @@ fn default_valleys_lie_on_both_lobes() {
         lobe.waypoints(&mut waypoints, half(&lobe), lobe.leaving(half(&lobe), lobe.origin));
         curve::spline(&waypoints, lobe.tension)
     };
-    let margin = build(&lobed(palmate(5))).unwrap();
+    let margin = entire(&lobed(palmate(5))).unwrap();
     let valley = valleys(&margin)[0] / 80.0;
     for spline in [whole(0, |lobe| lobe.upper), whole(1, |lobe| lobe.lower)] {
         let near = (0..=20_000).map(|i| spline.at(f64::from(i) / 20_000.0).distance(valley));
@@ -170,7 +170,7 @@ fn the_left_side_is_its_own() {
     (records[0].side, left.side, left.length) = (LobeSide::Right, LobeSide::Left, 0.4);
     records.insert(1, left);
     let spec = MarginSpec { lobe: records, ..lobed(LobingSpec::default()) };
-    let margin = build(&spec).unwrap();
+    let margin = entire(&spec).unwrap();
     assert_eq!(margin.check(), None);
     let lowest = |side: f64| {
         let tips = tips(&margin).into_iter().filter(|tip| tip.x * side > 0.0);
@@ -249,7 +249,7 @@ fn random_lobes_are_margins_or_are_refused_with_a_place() {
             (0..n).map(|i| drawn(&mut rng, LobeSide::Both, n, i)).collect();
         lobe.push(drawn(&mut rng, LobeSide::Apex, n, n));
         let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
-        match build(&spec) {
+        match entire(&spec) {
             Ok(margin) => {
                 made += 1;
                 assert_eq!(margin.check(), None);
@@ -267,7 +267,7 @@ fn basal_lobes_that_overlap_are_cut_back_to_a_slit() {
     let mut lobe = vec![lowest];
     lobe.extend(palmate(5).records().unwrap().split_off(1));
     let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
-    let margin = build(&spec).unwrap();
+    let margin = entire(&spec).unwrap();
     assert_eq!(margin.check(), None);
     let outline = margin.outline();
     assert!((outline[1].x - SLIT * 80.0).abs() < 1e-9 && outline[1].y < 0.0, "{}", outline[1]);
@@ -289,7 +289,7 @@ fn lobes_that_cross_name_the_key_the_value_and_a_bound_that_works() {
     let mut lobe = lobing.records().unwrap();
     lobe[1].lower.waist_x = 1.1;
     let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
-    let error = build(&spec).unwrap_err();
+    let error = entire(&spec).unwrap_err();
     let MarginError::LobeCrossing { key, value, problem, .. } = &error else { panic!("{error}") };
     assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 1.1));
     let words = problem.split("take ").nth(1).unwrap();
@@ -297,5 +297,5 @@ fn lobes_that_cross_name_the_key_the_value_and_a_bound_that_works() {
     let mut mended = spec;
     mended.lobe[1].upper.waist_x *= bound / value;
     mended.lobe[1].lower.waist_x = bound;
-    assert_eq!(build(&mended).unwrap().check(), None);
+    assert_eq!(entire(&mended).unwrap().check(), None);
 }

@@ -349,7 +349,7 @@ mod tests {
     fn the_classifier_gives_every_shape_back_its_own_type() {
         for shape in all() {
             let spec = MarginSpec::default().shaped(&shape);
-            let margin = margin::build(&spec).unwrap_or_else(|e| panic!("{}: {e}", shape.name));
+            let margin = margin::entire(&spec).unwrap_or_else(|e| panic!("{}: {e}", shape.name));
             assert_eq!(margin.check(), None);
             let found = classify::classify(&margin);
             assert_eq!(found, [shape.kind; 2], "{}", shape.name);
@@ -364,7 +364,7 @@ mod tests {
     fn sides_are_classified_apart() {
         let [ovate, obovate] = ["ovate", "obovate"].map(|name| find(name).unwrap());
         let spec = MarginSpec { left: obovate.side, ..MarginSpec::default().shaped(&ovate) };
-        let margin = margin::build(&spec).unwrap();
+        let margin = margin::entire(&spec).unwrap();
         assert_eq!(classify::classify(&margin), [ovate.kind, obovate.kind]);
     }
 }

@@ -1,12 +1,14 @@
-//! What the loop of growth asks of the sources, however they choose whom to call.
+//! What the loop of growth asks of the sources, however they choose whom to call, and what both
+//! ways of choosing have in common.
 
 use glam::DVec2;
 
+use super::calls::Calls;
 use super::extend::Nodes;
-use super::open;
+use super::field::Field;
 use crate::growth::{GrowingBlade, Metric};
-use crate::veins::Unreached;
 use crate::veins::graph::NodeId;
+use crate::veins::{Unreached, VeinSpec};
 
 /// The living sources and whom they call.
 pub(super) trait Callers {
@@ -20,28 +22,31 @@ pub(super) trait Callers {
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric);
 
     /// Follows the sources that were born and died.
-    fn keep_index(&mut self);
+    fn keep_order(&mut self, metric: Metric);
 
-    /// Lets every source call; the called nodes, ascending.
-    fn call(
-        &mut self,
-        blade: &GrowingBlade,
-        step: u64,
-        metric: Metric,
-        nodes: &Nodes,
-    ) -> Vec<NodeId>;
+    /// Lets every source call.
+    fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes);
 
-    /// The sum of the unit vectors towards the callers of a called node.
-    fn pull(&self, node: NodeId) -> DVec2;
+    /// The calls of this step.
+    fn calls(&self) -> &Calls;
 
-    /// How many call a called node.
-    fn count(&self, node: NodeId) -> usize;
+    /// Where a living source is.
+    fn place(&self, source: u32) -> DVec2;
 
     /// The unit vectors towards the callers of a called node, by their ids.
-    fn units(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> Vec<DVec2>;
+    fn units(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> Vec<DVec2> {
+        let from = nodes.position(node);
+        self.calls().callers(node).map(|source| unit(from, self.place(source), metric)).collect()
+    }
 
     /// The unit vector towards the nearest caller, the first among equals.
-    fn unit_to_nearest(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> DVec2;
+    fn unit_to_nearest(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> DVec2 {
+        let from = nodes.position(node);
+        let distance2 = |source: &u32| metric.distance_squared(self.place(*source), from);
+        let nearest =
+            self.calls().callers(node).min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
+        nearest.map_or(DVec2::ZERO, |source| unit(from, self.place(source), metric))
+    }
 
     /// Tells the sources of the nodes from `before` on and removes those that are done with; the ids
     /// of the dead.
@@ -63,62 +68,71 @@ pub(super) trait Callers {
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached;
 }
 
-impl Callers for open::Calls {
-    fn len(&self) -> usize {
-        self.len()
+/// The unit vector from a node to a source.
+pub(super) fn unit(node: DVec2, source: DVec2, metric: Metric) -> DVec2 {
+    let towards = metric.between(node, source);
+    towards / towards.length_squared().sqrt()
+}
+
+/// How far nodes matter to sources, in lengths of the blade.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ranges {
+    reach_mm: f64,
+    kill_mm: f64,
+}
+
+impl Ranges {
+    pub(super) fn new(spec: &VeinSpec) -> Self {
+        let unlimited = spec.attraction_distance_mm == 0.0;
+        let reach_mm = if unlimited { f64::INFINITY } else { spec.attraction_distance_mm };
+        Self { reach_mm, kill_mm: spec.kill_distance_mm }
     }
 
-    fn living(&self) -> usize {
-        self.living()
+    /// Whether all nodes matter to all sources.
+    pub(super) fn are_unlimited(&self) -> bool {
+        self.reach_mm.is_infinite()
     }
 
-    fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
-        self.add(p, nodes, metric);
+    /// How far a node can matter to a source: by being called or by having come.
+    pub(super) fn search(&self, metric: Metric) -> f64 {
+        metric.length(self.reach_mm.max(self.kill_mm))
     }
 
-    fn keep_index(&mut self) {
-        self.keep_index();
+    /// The same, squared.
+    pub(super) fn search2(&self, metric: Metric) -> f64 {
+        self.search(metric).powi(2)
     }
 
-    fn call(
-        &mut self,
-        blade: &GrowingBlade,
-        step: u64,
-        metric: Metric,
-        nodes: &Nodes,
-    ) -> Vec<NodeId> {
-        self.call(blade, step, metric, nodes)
+    /// How far a source calls, squared.
+    pub(super) fn reach2(&self, metric: Metric) -> f64 {
+        metric.length(self.reach_mm).powi(2)
     }
 
-    fn pull(&self, node: NodeId) -> DVec2 {
-        self.pull(node)
+    /// Where a node has come to a source, squared.
+    pub(super) fn kill2(&self, metric: Metric) -> f64 {
+        metric.length(self.kill_mm).powi(2)
     }
+}
 
-    fn count(&self, node: NodeId) -> usize {
-        self.callers(node).count()
+/// Why sources are left, where `nearest` tells the nearest node in reach of one in a slot.
+pub(super) fn unreached<S>(
+    field: &Field<S>,
+    blade: &GrowingBlade,
+    nodes: &Nodes,
+    nearest: impl Fn(usize) -> Option<NodeId>,
+) -> Unreached {
+    let mut unreached = Unreached::default();
+    for slot in field.living_slots() {
+        let node = if field.source(slot).is_acting { nearest(slot) } else { None };
+        let Some(node) = node else {
+            unreached.out_of_reach += 1;
+            continue;
+        };
+        if blade.blocks_sight(field.place(slot), nodes.position(node), blade.last_step()) {
+            unreached.hidden += 1;
+        } else {
+            unreached.unfinished += 1;
+        }
     }
-
-    fn units(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> Vec<DVec2> {
-        self.callers(node).map(|source| self.unit_to(source, nodes, metric)).collect()
-    }
-
-    fn unit_to_nearest(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> DVec2 {
-        let nearest = self.nearest_caller(node);
-        nearest.map_or(DVec2::ZERO, |source| self.unit_to(source, nodes, metric))
-    }
-
-    fn take_over(
-        &mut self,
-        before: usize,
-        _: &GrowingBlade,
-        _: u64,
-        metric: Metric,
-        nodes: &mut Nodes,
-    ) -> Vec<u32> {
-        self.take_over(before, nodes, metric)
-    }
-
-    fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached {
-        self.unreached(blade, nodes)
-    }
+    unreached
 }

@@ -3,11 +3,12 @@
 use glam::DVec2;
 
 use super::callers::Callers;
+use super::habit::Steering;
 use super::web::{Edge, Web};
 use crate::geometry::point_grid::{Nearest, PointGrid};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::VeinSpec;
-use crate::veins::graph::{NodeId, VeinGraph};
+use crate::veins::graph::{NodeId, Rank, VeinGraph};
 
 /// A child nearer than this (in steps) to a child that the node already has would be the same vein
 /// again: a node pulled evenly from both sides would lay it for ever.
@@ -24,10 +25,6 @@ const LEAST_PULL: f64 = 1.0 - 1e-9;
 /// A join may be this long, in steps. One that ends at a long edge (made when the blade was small) would
 /// run along it.
 const LONGEST_JOIN: f64 = 2.0;
-
-/// Where veins meet, the way round along other veins must be longer than this, in kill distances:
-/// below it both are one vein that passes on two sides of a source, and the loop would be a speck.
-const LEAST_WAY_ROUND: f64 = 2.0;
 
 /// What happens where a vein would cross another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,9 +44,10 @@ pub(super) struct Nodes {
     far: PointGrid,
     step_mm: f64,
     far_cell_mm: f64,
-    kill_mm: f64,
+    least_loop_mm: f64,
     web: Web,
     meeting: Meeting,
+    steering: Steering,
 }
 
 impl Nodes {
@@ -75,9 +73,10 @@ impl Nodes {
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             far_cell_mm,
-            kill_mm: spec.kill_distance_mm,
+            least_loop_mm: spec.least_loop * spec.kill_distance_mm,
             web,
             meeting,
+            steering: Steering::new(spec, 0.0),
         };
         for &node in nodes.graph.positions() {
             nodes.near.push(node);
@@ -114,6 +113,11 @@ impl Nodes {
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element());
         let cell = metric.reach(metric.length(self.step_mm)).max_element();
         self.web.refine(cell, self.graph.positions());
+    }
+
+    /// How veins are steered from now on.
+    pub(super) fn steer(&mut self, steering: Steering) {
+        self.steering = steering;
     }
 
     /// From now on veins stop where they would cross another.
@@ -185,8 +189,8 @@ impl Nodes {
         step: u64,
         metric: Metric,
     ) {
-        let mut pull = calls.pull(node);
-        let mut left = calls.count(node);
+        let mut pull = calls.calls().pull(node);
+        let mut left = calls.calls().count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
             let units = calls.units(node, self, metric);
             let mut first = 0;
@@ -202,13 +206,65 @@ impl Nodes {
         if length == 0.0 {
             return;
         }
-        let made = self.sprout(node, pull / length, blade, step, metric);
+        let straight = pull / length;
+        if !self.steering.is_off() {
+            let towards = self.steered(node, straight, metric);
+            if self.sprout(node, towards, blade, step, metric) != Sprout::Blocked {
+                return;
+            }
+        }
+        let made = self.sprout(node, straight, blade, step, metric);
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
             let towards = calls.unit_to_nearest(node, self, metric);
             self.sprout(node, towards, blade, step, metric);
         }
+    }
+
+    /// Where a vein goes that its callers pull along a unit vector: only a tip has a heading.
+    fn steered(&self, node: NodeId, towards: DVec2, metric: Metric) -> DVec2 {
+        let heading = (self.graph.parent(node))
+            .filter(|_| self.web.is_tip(node))
+            .map(|parent| metric.between(self.position(parent), self.position(node)))
+            .map(DVec2::normalize_or_zero);
+        self.steering.steered(towards, heading)
+    }
+
+    /// Decides what vein the roots belong to that have no rank.
+    pub(super) fn rank_roots(&mut self, rank: Rank) {
+        for node in 0..self.graph.len() as NodeId {
+            if self.graph.parent(node).is_none() && self.graph.rank(node).is_none() {
+                self.graph.set_rank(node, rank);
+            }
+        }
+    }
+
+    /// Makes a child of a ranked vein at a place, unless another vein, the margin or a cut is in the
+    /// way.
+    pub(super) fn lay(
+        &mut self,
+        node: NodeId,
+        place: DVec2,
+        rank: Rank,
+        blade: &GrowingBlade,
+        step: u64,
+        metric: Metric,
+    ) -> Option<NodeId> {
+        let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
+        let around = metric.around(place, least);
+        let is_free = !self
+            .near
+            .any_near(place, around, |_, q| metric.distance_squared(place, q) < least * least)
+            && blade.is_inside(place, step)
+            && !blade.blocks_sight(self.position(node), place, step)
+            && !self.overlaps(node, place, metric)
+            && self.crossed(self.position(node), place, [node, node]).is_none();
+        is_free.then(|| {
+            let child = self.add(node, place);
+            self.graph.set_rank(child, rank);
+            child
+        })
     }
 
     /// Makes a child one step from `node`, if there is room for it.
@@ -279,7 +335,7 @@ impl Nodes {
 
     /// Whether two nodes are on one vein, or next to each other on two that have met.
     fn are_close(&self, a: NodeId, b: NodeId, metric: Metric) -> bool {
-        let limit = metric.length(LEAST_WAY_ROUND * self.kill_mm);
+        let limit = metric.length(self.least_loop_mm);
         let length = |a: NodeId, b: NodeId| {
             metric.distance_squared(self.position(a), self.position(b)).sqrt()
         };

@@ -13,12 +13,15 @@
 //! Lengths in the settings are millimetres of the blade at the step in question.
 
 mod callers;
+mod calls;
 mod claims;
 mod closed;
+mod convergence;
 mod extend;
+mod field;
+mod habit;
 mod neighbours;
 mod open;
-mod source_index;
 mod sources;
 mod tiles;
 mod web;
@@ -29,8 +32,16 @@ use crate::growth::{GrowingBlade, Metric};
 use crate::observer::{Observer, Progress};
 use crate::seed::Rng;
 use callers::Callers;
+use convergence::Convergence;
+pub use convergence::ConvergenceSpec;
 use extend::{Meeting, Nodes};
+use habit::Steering;
+pub(super) use habit::check;
+pub use habit::{DensitySpec, PhaseSpec};
 use sources::Supply;
+
+/// No node, no source.
+const NONE: u32 = u32::MAX;
 
 /// What grew.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,8 +93,13 @@ pub fn grow(
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
-    let mut open = open::Calls::new(spec, blade);
-    let mut closed = is_closed.then(|| closed::Calls::new(spec, blade));
+    let mut convergence = Convergence::new(spec, blade, steps, rng);
+    if convergence.is_some() {
+        nodes.rank_roots(convergence::PRIMARY);
+    }
+    let is_steered = !Steering::new(spec, 0.0).is_off();
+    let mut open = open::Sources::new(spec, blade);
+    let mut closed = is_closed.then(|| closed::Sources::new(spec, blade));
     // Full size: nothing changes any more once a step has changed nothing.
     let full_size = blade.is_full_size();
     let mut stands_still = false;
@@ -95,6 +111,10 @@ pub fn grow(
         let metric = frame.metric();
         nodes.refine(metric);
         let is_closing = made < closing_steps;
+        let age = made as f64 / steps as f64;
+        if is_steered {
+            nodes.steer(Steering::new(spec, age));
+        }
         if is_closing && stands_still {
             // Nothing happens before the last veins, which end free.
             made += 1;
@@ -111,13 +131,18 @@ pub fn grow(
             None => &mut open,
         };
         // Seed new sources where the blade has room.
-        supply.seed(step, metric, rng, calls, &nodes)?;
+        supply.seed(step, age, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.
-        let called = calls.call(blade, step, metric, &nodes);
+        calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
-        for node in called {
+        for node in calls.calls().nodes() {
             nodes.extend(node, calls, blade, step, metric);
+        }
+        let points = convergence.as_mut().filter(|points| points.is_open(made));
+        let is_open = points.is_some();
+        if let Some(points) = points {
+            points.grow(&mut nodes, step, metric, rng);
         }
         if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
             let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
@@ -126,7 +151,11 @@ pub fn grow(
         }
         // Let the new nodes take sources over, and remove those that have been reached.
         let dead = calls.take_over(before, blade, step, metric, &mut nodes);
-        stands_still = full_size && dead.is_empty() && nodes.len() == before && !calls.is_waiting();
+        stands_still = full_size
+            && dead.is_empty()
+            && nodes.len() == before
+            && !calls.is_waiting()
+            && !supply.is_paced();
         supply.forget(&dead);
         made += 1;
         nodes_after_step.push(nodes.len() as u32);
@@ -141,7 +170,8 @@ pub fn grow(
         }
         // Stop when nothing can change any more: under growth lengths shrink and room appears, so
         // only a blade of full size settles while there are sources left.
-        if supply.is_exhausted() && (calls.living() == 0 || stands_still) && is_last {
+        let is_settled = calls.living() == 0 || stands_still;
+        if supply.is_exhausted() && is_settled && is_last && !is_open {
             break;
         }
     }
@@ -167,19 +197,19 @@ pub fn grow(
 /// Turns closed venation into open: what has come to a source meets, and the sources that are left
 /// call their nearest node only.
 fn end_free(
-    mut sources: closed::Calls,
+    mut sources: closed::Sources,
     spec: &VeinSpec,
     blade: &GrowingBlade,
     step: u64,
     nodes: &mut Nodes,
     supply: &mut Supply<'_>,
-) -> open::Calls {
+) -> open::Sources {
     let frame = blade.frame(step);
     let metric = frame.metric();
     supply.forget(&sources.settle(blade, step, metric, nodes));
     nodes.end_free();
     let mut spec = spec.clone();
     let least = spec.node_step_mm / 2.0;
-    spec.kill_distance_mm = (spec.kill_distance_mm * spec.veinlet_scale).max(least);
+    spec.kill_distance_mm = (spec.kill_distance_mm * spec.veinlet_kill).max(least);
     sources.opened(&spec, blade, metric, nodes)
 }

@@ -13,7 +13,7 @@
 
 use glam::DVec2;
 
-use super::claims::NONE;
+use super::NONE;
 use super::extend::Nodes;
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::claims::NONE;
+use super::NONE;
 use crate::geometry::Rect;
 use crate::geometry::polygon::{cross, segments_touch};
 use crate::geometry::segment_grid::SegmentGrid;
@@ -98,6 +98,11 @@ impl Web {
             let apart = new.perp_dot(old);
             new.dot(old) > 0.0 && apart * apart < least * least * longer2
         })
+    }
+
+    /// Whether one edge at most ends at a node.
+    pub(super) fn is_tip(&self, node: NodeId) -> bool {
+        self.beside(node).nth(1).is_none()
     }
 
     pub(super) fn are_beside(&self, a: NodeId, b: NodeId) -> bool {

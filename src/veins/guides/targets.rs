@@ -3,12 +3,12 @@
 //! A tooth is a place that stands out of the margin as it would be without teeth (the outline
 //! evened), by more than its neighbourhood does; fine and coarse teeth are looked for apart. A lobe
 //! tip is farther from the petiole than the margin on both its sides, by a good share of the length.
-//! Found on any polygon, drawn, parametric or scanned.
+//! Found on any polygon, drawn or scanned; a margin that knows its own teeth is asked for them.
 
 use glam::DVec2;
 
 use crate::geometry::polygon;
-use crate::margin::Margin;
+use crate::margin::{Landmark, LandmarkKind, Margin};
 
 /// Fine teeth: the outline is evened over this share of the length of the blade.
 const FINE: f64 = 0.012;
@@ -54,6 +54,10 @@ pub(super) fn evened(line: &[DVec2], sigma: f64) -> Vec<DVec2> {
 /// The teeth of a margin on both sides, from base to apex on each; `spacing` is what lies between
 /// two secondaries at the margin (mm).
 pub(super) fn teeth(margin: &Margin, spacing: f64) -> Vec<Tip> {
+    let known = known_teeth(margin);
+    if !known.is_empty() {
+        return known;
+    }
     let fine = FINE * margin.length_mm();
     let mut tips = tips_at(margin, fine);
     let coarse = (0.5 * spacing).min(0.08 * margin.length_mm());
@@ -67,6 +71,40 @@ pub(super) fn teeth(margin: &Margin, spacing: f64) -> Vec<Tip> {
             }
         }
     }
+    tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));
+    tips
+}
+
+/// The teeth of the first order that the margin itself knows of, in the order of [`teeth`].
+fn known_teeth(margin: &Margin) -> Vec<Tip> {
+    let outline = margin.outline();
+    let marks = margin.landmarks();
+    let at = |i: usize| outline[marks[i].vertex];
+    let is_sinus = |mark: &Landmark| matches!(mark.kind, LandmarkKind::Sinus { order: 1 });
+    let mut ways = vec![0.0];
+    ways.extend(polygon::edges(outline).scan(0.0, |way, (a, b)| {
+        *way += a.distance(b);
+        Some(*way)
+    }));
+    let (apex, round) = (ways[margin.apex_index()], ways[outline.len()]);
+    let teeth = (0..marks.len()).filter(|&i| marks[i].kind == LandmarkKind::Tooth { order: 1 });
+    let mut tips: Vec<Tip> = teeth
+        .map(|i| {
+            let below = marks[..i].iter().rposition(is_sinus).map(at);
+            let above = marks[i..].iter().position(is_sinus).map(|k| at(i + k));
+            // A polygon may know its teeth without the sinuses: then all are alike.
+            let height = below.zip(above).map_or(1.0, |(below, above)| {
+                polygon::nearest_on_segment(below, above, at(i)).distance(at(i))
+            });
+            let way = ways[marks[i].vertex];
+            let (side, along) = if marks[i].vertex <= margin.apex_index() {
+                (1.0, way / apex)
+            } else {
+                (-1.0, (round - way) / (round - apex))
+            };
+            Tip { at: at(i), along, height, side }
+        })
+        .collect();
     tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));
     tips
 }

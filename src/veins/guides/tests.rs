@@ -48,7 +48,7 @@ fn broken(graph: &VeinGraph, margin: &Margin) -> Option<String> {
 }
 
 fn oval() -> Margin {
-    margin::build(&MarginSpec::default()).expect("the default margin")
+    margin::build(&MarginSpec::default(), Seed(1)).expect("the default margin")
 }
 
 /// Wavy or lobed: a closed curve around the axis with the base in a corner at the origin.

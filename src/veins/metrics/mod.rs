@@ -14,6 +14,7 @@
 pub mod areoles;
 pub mod bins;
 pub mod distances;
+pub mod hierarchy;
 pub mod hull;
 pub mod junctions;
 mod lines;

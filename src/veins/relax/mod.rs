@@ -14,7 +14,7 @@ use super::VeinSpec;
 use super::chains::{Chain, Chains, Edge};
 use super::graph::{NodeId, VeinGraph};
 use super::widths;
-use crate::geometry::polygon::{self, nearest_on_segment, segments_touch};
+use crate::geometry::polygon::{nearest_on_segment, segments_touch};
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 
@@ -31,15 +31,16 @@ const LEAST_EDGE: f64 = 0.2;
 /// Edges that share a node stay apart by this share of the shorter one.
 const LEAST_GAP: f64 = 0.02;
 
-/// A graph in `margin` relaxed as `veins.relaxation` says; as it is at 0.
+/// A graph in `margin` relaxed as `veins.relaxation` says; as it is at 0. Veins pull with their widths
+/// after the settings, those of a tree where widths come from the flow.
 #[must_use]
 pub fn relaxed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph) -> VeinGraph {
     if spec.relaxation == 0 || graph.is_empty() {
         return graph;
     }
-    let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
-    let positions = Relaxation::new(&graph, &radii, margin, spec.node_step_mm).run(spec.relaxation);
-    let mut places = positions.into_iter();
+    let (radii, _) = widths::of_tree(spec, &graph, spec.tip_radius_mm);
+    let relaxation = Relaxation::new(&graph, &radii, margin.lines(), spec.node_step_mm);
+    let mut places = relaxation.run(spec.relaxation).into_iter();
     graph.mapped(|old| places.next().unwrap_or(old))
 }
 
@@ -57,11 +58,9 @@ struct Relaxation {
 }
 
 impl Relaxation {
-    fn new(graph: &VeinGraph, radii: &[f64], margin: &Margin, step: f64) -> Self {
+    fn new(graph: &VeinGraph, radii: &[f64], margin: SegmentIndex, step: f64) -> Self {
         let chains = Chains::of(graph);
         let positions = graph.positions().to_vec();
-        let cuts = margin.cuts().iter().flat_map(|line| line.windows(2).map(|w| (w[0], w[1])));
-        let margin = SegmentIndex::new(polygon::edges(margin.outline()).chain(cuts).collect());
         let pulls = chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
         let is_pinned = |node: NodeId| {
             graph.parent(node).is_none()
@@ -93,7 +92,8 @@ impl Relaxation {
     /// it began.
     fn displacement(&self, junction: NodeId) -> DVec2 {
         let here = self.positions[junction as usize];
-        let (mut force, mut pulls, mut nearest) = (DVec2::ZERO, 0.0, f64::INFINITY);
+        let (mut force, mut pulls) = (DVec2::ZERO, 0.0);
+        let mut ways: Vec<DVec2> = Vec::with_capacity(3);
         for &number in &self.chains.at[junction as usize] {
             let nodes = &self.chains.chains[number as usize].nodes;
             let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
@@ -105,9 +105,15 @@ impl Relaxation {
             let pull = self.pulls[number as usize];
             force += towards.normalize_or_zero() * pull;
             pulls += pull;
-            nearest = nearest.min(towards.length());
+            ways.push(towards);
         }
-        if pulls > 0.0 {
+        // Towards the end of a vein it goes a share of its length at most.
+        let nearest = ways
+            .iter()
+            .filter(|towards| towards.dot(force) > 0.0)
+            .map(|towards| towards.length())
+            .fold(f64::INFINITY, f64::min);
+        if pulls > 0.0 && nearest.is_finite() {
             (force * (SHARE * nearest / pulls)).clamp_length_max(self.step / 2.0)
         } else {
             DVec2::ZERO

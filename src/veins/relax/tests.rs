@@ -6,7 +6,7 @@ use crate::veins::Rank;
 use crate::veins::graph::VeinKind;
 
 fn margin() -> Margin {
-    crate::margin::build(&MarginSpec::default()).expect("the default margin")
+    crate::margin::build(&MarginSpec::default(), crate::seed::Seed(1)).expect("the default margin")
 }
 
 fn relaxing(sweeps: u64) -> VeinSpec {
@@ -29,7 +29,7 @@ fn tee() -> VeinGraph {
 #[test]
 fn equal_veins_meet_at_120_degrees() {
     let graph = tee();
-    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], &margin(), 0.3);
+    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), 0.3);
     relaxation.margin = SegmentIndex::new(Vec::new());
     let positions = relaxation.run(400);
     let hub = positions[2];
@@ -47,7 +47,7 @@ fn a_wide_vein_holds_its_course() {
     let widths = [0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0];
     let mut widths = widths.to_vec();
     widths[2] = 0.1;
-    let positions = Relaxation::new(&graph, &widths, &margin(), 0.3).run(5);
+    let positions = Relaxation::new(&graph, &widths, margin().lines(), 0.3).run(5);
     assert!(positions[2].distance(graph.positions()[2]) < 0.6, "{}", positions[2]);
 }
 

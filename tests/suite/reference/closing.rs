@@ -123,7 +123,7 @@ impl World<'_> {
     }
 
     /// All edges, as they were made.
-    fn edges(&self) -> Vec<(usize, usize)> {
+    pub(super) fn edges(&self) -> Vec<(usize, usize)> {
         let grown = self.parents.iter().enumerate().filter_map(|(v, p)| Some(((*p)?, v)));
         grown.chain(self.joins.iter().copied()).collect()
     }

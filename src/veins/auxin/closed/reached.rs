@@ -1,19 +1,19 @@
 //! Sources that a vein has come to: whom they still wait for, and what meets at their place.
 
-use super::super::claims::NONE;
+use super::super::NONE;
 use super::super::extend::Nodes;
 use super::super::neighbours::SECTORS;
-use super::{At, Calls, DEAD, PATIENCE, Tag};
+use super::{At, PATIENCE, Sources, Tag};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 
-impl Calls {
+impl Sources {
     /// Which of the relative neighbours of a tagged source it waits for: those it was tagged with and
     /// what grew out of them.
     pub(super) fn follow_tag(&mut self, i: usize, nodes: &Nodes) {
-        let tag = &mut self.tags[self.states[i].tag as usize];
+        let tag = &mut self.tags[self.field.state(i).tag as usize];
         let mut veins = [NONE; SECTORS];
-        for (k, node, _) in self.states[i].around.neighbours() {
+        for (k, node, _) in self.field.state(i).around.neighbours() {
             let is_of = |vein: NodeId| tag.veins.contains(&vein);
             if is_of(node) || nodes.graph().parent(node).is_some_and(is_of) {
                 veins[k] = node;
@@ -24,10 +24,10 @@ impl Calls {
 
     /// Tags a source that a node has come to.
     pub(super) fn tag(&mut self, i: usize, metric: Metric, at: At<'_>) {
-        let limit2 = self.search(metric).powi(2);
+        let limit2 = self.ranges.search2(metric);
         let mut veins = [NONE; SECTORS];
         let mut farthest2 = 0.0f64;
-        let around = self.states[i].around;
+        let around = self.field.state(i).around;
         for (k, node, distance2) in around.neighbours() {
             if distance2 <= limit2 && self.sees(i, k, node, at) {
                 veins[k] = node;
@@ -36,7 +36,7 @@ impl Calls {
         }
         let steps = PATIENCE * farthest2.sqrt() / metric.length(self.step_mm);
         let tag = Tag { veins, last_step: at.step + steps.ceil() as u64 };
-        self.states[i].tag = match self.free_tags.pop() {
+        let place = match self.free_tags.pop() {
             Some(place) => {
                 self.tags[place as usize] = tag;
                 place
@@ -46,21 +46,21 @@ impl Calls {
                 self.tags.len() as u32 - 1
             }
         };
+        self.field.state_mut(i).tag = place;
     }
 
     /// Removes a source; the veins that have come to it, the first that grew first.
     pub(super) fn remove(&mut self, i: usize, kill2: f64) -> Vec<NodeId> {
-        let tag = self.tags[self.states[i].tag as usize];
+        let tag = self.tags[self.field.state(i).tag as usize];
         let come = |&(k, node, distance2): &(usize, NodeId, f64)| {
             tag.veins[k] == node && distance2 <= kill2
         };
         let mut veins: Vec<NodeId> =
-            self.states[i].around.neighbours().filter(come).map(|(_, node, _)| node).collect();
+            self.field.state(i).around.neighbours().filter(come).map(|(_, node, _)| node).collect();
         veins.sort_unstable();
-        self.free_tags.push(self.states[i].tag);
-        self.states[i].tag = NONE;
-        self.outer2[i] = DEAD;
-        self.living -= 1;
+        self.free_tags.push(self.field.state(i).tag);
+        self.field.state_mut(i).tag = NONE;
+        self.field.kill(i);
         veins
     }
 
@@ -73,37 +73,35 @@ impl Calls {
         nodes: &mut Nodes,
         patience: bool,
     ) -> Vec<u32> {
-        let kill2 = self.kill2(metric);
+        let kill2 = self.ranges.kill2(metric);
         let mut reached = std::mem::take(&mut self.reached);
         reached.sort_unstable();
         reached.dedup();
-        let mut dead = Vec::new();
         let mut meetings = Vec::new();
         reached.retain(|&source| {
-            let Some(i) = self.slot(source) else { return false };
+            let Some(i) = self.field.slot(source) else { return false };
             let at = At { blade, step, nodes };
-            if self.states[i].tag == NONE {
-                if self.states[i].around.least2() > kill2 {
+            if self.field.state(i).tag == NONE {
+                if self.field.state(i).around.least2() > kill2 {
                     return false;
                 }
                 self.tag(i, metric, at);
             } else {
                 self.follow_tag(i, nodes);
             }
-            let tag = self.tags[self.states[i].tag as usize];
+            let tag = self.tags[self.field.state(i).tag as usize];
             let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
                 tag.veins[k] == node && distance2 > kill2
             };
             let waits = patience
                 && step < tag.last_step
-                && self.states[i].around.neighbours().any(is_on_its_way);
+                && self.field.state(i).around.neighbours().any(is_on_its_way);
             if waits {
                 return true;
             }
             let veins = self.remove(i, kill2);
-            dead.push(source);
             if veins.len() > 1 {
-                meetings.push((self.states[i].place, veins));
+                meetings.push((self.field.place(i), veins));
             }
             false
         });
@@ -111,7 +109,7 @@ impl Calls {
         for (place, veins) in meetings {
             nodes.meet(place, &veins, blade, step, metric);
         }
-        dead
+        self.field.take_dead()
     }
 
     /// Ends the waiting of all tagged sources; the ids of the dead.
@@ -125,8 +123,8 @@ impl Calls {
         if self.deforms {
             // The blade may have grown since its neighbours were looked up.
             for source in self.reached.clone() {
-                let Some(i) = self.slot(source) else { continue };
-                let around = self.look_around(self.states[i].place, nodes, metric);
+                let Some(i) = self.field.slot(source) else { continue };
+                let around = self.look_around(self.field.place(i), nodes, metric);
                 self.store(i, around);
             }
         }

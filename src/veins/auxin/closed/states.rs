@@ -2,25 +2,21 @@
 
 use glam::DVec2;
 
-use super::super::claims::NONE;
+use super::super::NONE;
 use super::super::extend::Nodes;
+use super::super::field::{Hit, Told};
 use super::super::neighbours::Around;
-use super::{Calls, DEAD};
+use super::{Sources, State};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
-impl Calls {
-    /// The place of the state of a source that is alive.
-    pub(super) fn slot(&self, source: u32) -> Option<usize> {
-        let slot = self.slots[source as usize];
-        (slot != NONE && self.outer2[slot as usize] != DEAD).then_some(slot as usize)
-    }
-
+impl Sources {
     /// Looks the neighbours of a place up from nothing.
     pub(super) fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
-        let search = self.search(metric);
+        let search = self.ranges.search(metric);
+        let bounds = self.field.bounds();
         let mut around = Around::EMPTY;
-        let (low, high) = metric.corners_from(s, self.bounds);
+        let (low, high) = metric.corners_from(s, bounds);
         nodes.grid().for_each_outwards(
             &mut around,
             s,
@@ -38,76 +34,23 @@ impl Calls {
         around
     }
 
-    /// Drops the states of the dead and puts the others in order of place.
-    pub(super) fn tidy(&mut self) {
-        let size = self.bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let key = |p: DVec2| {
-            let place = ((p - self.bounds.min) / size * f64::from(u16::MAX)).max(DVec2::ZERO);
-            spread(place.x as u32) | spread(place.y as u32) << 1
-        };
-        let mut order: Vec<(u64, u32)> = Vec::with_capacity(self.living);
-        for (i, state) in self.states.iter().enumerate() {
-            if self.outer2[i] == DEAD {
-                self.slots[state.source as usize] = NONE;
-            } else {
-                order.push((key(state.place), i as u32));
-            }
-        }
-        order.sort_unstable();
-        self.states = order.iter().map(|&(_, i)| self.states[i as usize]).collect();
-        self.outer2 = order.iter().map(|&(_, i)| self.outer2[i as usize]).collect();
-        for (slot, state) in self.states.iter().enumerate() {
-            self.slots[state.source as usize] = slot as u32;
-        }
-    }
-
     pub(super) fn store(&mut self, i: usize, around: Around) {
-        self.states[i].around = around;
-        self.outer2[i] = around.most2();
+        self.field.state_mut(i).around = around;
+        self.field.set_bound2(i, around.most2());
     }
 
-    /// Tells the sources around of a new node.
-    pub(super) fn offer(&mut self, node: NodeId, metric: Metric, nodes: &Nodes) {
-        let p = nodes.position(node);
-        let search = self.search(metric);
-        let (search2, kill2) = (search * search, self.kill2(metric));
-        let slots = self.states.len() as u32;
-        let Self { index, states, outer2, arrived, reached, .. } = self;
-        let mut offer = |slot: u32, about2: f64| {
-            let i = slot as usize;
-            if about2 * (1.0 - 1e-9) >= outer2[i] {
-                return;
-            }
-            let state = &mut states[i];
-            let distance2 = metric.distance_squared(state.place, p);
-            if distance2 >= outer2[i] || distance2 > search2 {
-                return;
-            }
-            state.around.offer(state.place, node, p, distance2, nodes, metric);
-            outer2[i] = state.around.most2();
-            if !state.is_acting {
-                state.is_acting = true;
-                arrived.push(state.source);
-            }
-            if distance2 <= kill2 && state.tag == NONE {
-                reached.push(state.source);
-            }
+    /// Tells the sources around of the nodes from `before` on.
+    pub(super) fn offer(&mut self, before: usize, metric: Metric, nodes: &Nodes) {
+        let kill2 = self.ranges.kill2(metric);
+        let search = self.ranges.search(metric);
+        let hear = |hit: Hit, s: DVec2, state: &mut State| {
+            let p = nodes.position(hit.node);
+            state.around.offer(s, hit.node, p, hit.distance2, nodes, metric);
+            let is_marked = hit.distance2 <= kill2 && state.tag == NONE;
+            Told { bound2: state.around.most2(), is_marked }
         };
-        if search.is_finite() {
-            // The tree knows only the frame of the mature leaf, where the circle is an ellipse.
-            let radius = metric.radius(p, search);
-            index.for_each_within(p, radius, |slot, about2| offer(slot, metric.at_least(about2)));
-        } else {
-            (0..slots).for_each(|slot| offer(slot, 0.0));
-        }
+        let fresh = &nodes.positions()[before..];
+        let reached = self.field.offer(before as NodeId, fresh, search, metric, hear);
+        self.reached.extend(reached);
     }
-}
-
-/// The lower sixteen bits with a zero before each.
-fn spread(bits: u32) -> u64 {
-    let mut x = u64::from(bits & 0xffff);
-    x = (x | x << 8) & 0x00ff_00ff;
-    x = (x | x << 4) & 0x0f0f_0f0f;
-    x = (x | x << 2) & 0x3333_3333;
-    (x | x << 1) & 0x5555_5555
 }

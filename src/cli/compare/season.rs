@@ -1,0 +1,157 @@
+//! One leaf through its year: a sheet of states, or a film of the season. It grows once.
+
+use std::path::{Path, PathBuf};
+
+use venation::document::Document;
+use venation::io::image::{Caption, colour_png, film};
+use venation::io::write::{Overwrite, write_files};
+use venation::observer::Silent;
+use venation::pipeline::{self, Grown};
+use venation::raster::Grid;
+use venation::raster::montage::{self, Layout, Panel};
+use venation::seed::Seed;
+use venation::spec::LeafSpec;
+use venation::texture::TextureSet;
+use venation::texture::pigment::StateSpec;
+
+use super::super::{Context, Failure, leaf_args, save};
+
+/// States of a year: name, season, maturity.
+const YEAR: [(&str, f64, f64); 6] = [
+    ("spring", 0.0, 0.15),
+    ("summer", 0.0, 1.0),
+    ("early autumn", 0.32, 1.0),
+    ("autumn", 0.55, 1.0),
+    ("late autumn", 0.78, 1.0),
+    ("litter", 1.0, 1.0),
+];
+
+/// Pictures a second of a film.
+const FILM_RATE: u16 = 12;
+
+/// Panels are no larger than this (pixels).
+const PANEL_PX: usize = 420;
+
+/// A leaf that has grown.
+pub(super) struct Year {
+    spec: LeafSpec,
+    grown: Grown,
+    seed: u64,
+}
+
+impl Year {
+    pub(super) fn new(document: &Document, seed: u64) -> Result<Self, Failure> {
+        let mut spec = leaf_args::resolve(document, seed)?;
+        spec.output.maps = "basecolor,translucency".into();
+        let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
+        Ok(Self { spec, grown, seed })
+    }
+
+    fn painted(&self, season: f64, maturity: f64) -> Result<TextureSet, Failure> {
+        let health = self.spec.state.health;
+        let mut spec = self.spec.clone();
+        spec.state = StateSpec { season, maturity, health };
+        Ok(pipeline::paint(&spec, &self.grown, Seed(self.seed), &mut Silent)?)
+    }
+
+    /// The labelled sheet: front, back and against the light, a column for every state.
+    pub(super) fn sheet(&self) -> Result<(Vec<u8>, String), Failure> {
+        let mut rows: [Vec<Panel>; 3] = Default::default();
+        let mut table = "state,season,maturity,seed,red,green,blue,hue_deg\n".to_owned();
+        for (name, season, maturity) in YEAR {
+            let set = self.painted(season, maturity)?;
+            let [r, g, b] = mean(&set.front.base_colour);
+            let hue = hue_deg([r, g, b]);
+            table += &format!(
+                "{name},{season},{maturity},{},{r:.1},{g:.1},{b:.1},{hue:.1}\n",
+                self.seed
+            );
+            let notes = vec![if maturity < 1.0 {
+                format!("maturity {maturity}")
+            } else {
+                format!("season {season}")
+            }];
+            let against = against_the_light(&set);
+            rows[0].push(Panel { picture: set.front.base_colour, label: name.into(), notes });
+            let plain =
+                |picture, label: &str| Panel { picture, label: label.into(), notes: vec![] };
+            rows[1].push(plain(set.back.base_colour, "back"));
+            rows[2].push(plain(against, "against the light"));
+        }
+        let panels: Vec<Panel> = rows.into_iter().flatten().collect();
+        let title = format!("{}: season, seed {}", self.spec.name, self.seed);
+        let panel_px = (self.spec.texture.size_px as usize).min(PANEL_PX);
+        let picture = montage::sheet(&title, &panels, Layout { columns: YEAR.len(), panel_px });
+        Ok((colour_png(&picture, &Caption::default()), table))
+    }
+
+    /// The season from 0 to 1 in `frames` pictures: an animated PNG where `out` ends in `.png`, else
+    /// single pictures in a folder.
+    pub(super) fn film(
+        &self,
+        frames: usize,
+        out: &Path,
+        force: bool,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let maturity = self.spec.state.maturity;
+        let season = |i: usize| i as f64 / (frames - 1).max(1) as f64;
+        let animated = out.extension().is_some_and(|end| end == "png" || end == "apng");
+        if animated {
+            super::super::refuse_existing([&out.to_path_buf()], force)?;
+            let pictures: Vec<Grid<[u8; 4]>> = (0..frames)
+                .map(|i| Ok(self.painted(season(i), maturity)?.front.base_colour))
+                .collect::<Result<_, Failure>>()?;
+            save(out, film(&pictures, FILM_RATE))?;
+            writeln!(context.stdout, "{}", out.display())?;
+            return Ok(());
+        }
+        let name = |i: usize| format!("{}_season_{:04}.png", self.spec.name, i + 1);
+        let paths: Vec<PathBuf> = (0..frames).map(|i| out.join(name(i))).collect();
+        super::super::refuse_existing(&paths, force)?;
+        for (i, path) in paths.iter().enumerate() {
+            let picture = self.painted(season(i), maturity)?.front.base_colour;
+            let file = (name(i), colour_png(&picture, &Caption::default()));
+            write_files(out, &[file], Overwrite::Force)
+                .map_err(|error| Failure::Input(error.to_string()))?;
+            writeln!(context.stdout, "{}", path.display())?;
+        }
+        Ok(())
+    }
+}
+
+/// What shines through the leaf.
+fn against_the_light(set: &TextureSet) -> Grid<[u8; 4]> {
+    let mut picture = set.front.base_colour.clone();
+    let through = set.front.translucency.values();
+    for (texel, &[r, g, b]) in picture.values_mut().iter_mut().zip(through) {
+        *texel = [r, g, b, texel[3]];
+    }
+    picture
+}
+
+/// The mean colour of what is fully covered, in sRGB numbers.
+fn mean(picture: &Grid<[u8; 4]>) -> [f64; 3] {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for texel in picture.values().iter().filter(|texel| texel[3] == 255) {
+        sum = std::array::from_fn(|c| sum[c] + f64::from(texel[c]));
+        count += 1.0;
+    }
+    sum.map(|v| v / f64::max(count, 1.0))
+}
+
+fn hue_deg([r, g, b]: [f64; 3]) -> f64 {
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    let spread = most - least;
+    if spread == 0.0 {
+        return 0.0;
+    }
+    let sixths = if most == r {
+        ((g - b) / spread).rem_euclid(6.0)
+    } else if most == g {
+        (b - r) / spread + 2.0
+    } else {
+        (r - g) / spread + 4.0
+    };
+    60.0 * sixths
+}

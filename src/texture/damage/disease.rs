@@ -1,0 +1,112 @@
+//! What is still there but hurt: mines, spots, scorch.
+
+use glam::DVec2;
+
+use super::{BROWN, Blade, PALE};
+use crate::geometry::noise;
+use crate::geometry::polygon;
+use crate::texture::tissue::smooth;
+use crate::units::Angle;
+
+impl Blade<'_> {
+    /// Kills tissue from the margin and the tip inwards, first between the veins.
+    pub(super) fn scorch(&mut self, strength: f64) {
+        if strength == 0.0 {
+            return;
+        }
+        let strength = strength as f32;
+        let length = self.margin.length_mm() as f32;
+        for node in 0..self.nodes.len() {
+            let place = self.place(node);
+            if place.edge < -2.0 {
+                continue;
+            }
+            let p = self.at(node).as_vec2();
+            let [broad, middle, fine] = place.noise;
+            let tip = smooth(0.5, 1.0, p.y / length);
+            let reach =
+                self.breadth * strength * (0.16 + 0.14 * tip) * (1.0 + 0.9 * broad + 0.5 * middle);
+            let veins = 0.6 * reach * 0.6 / (0.6 + place.major);
+            let depth = reach - veins - place.edge + 0.4 * fine;
+            // A yellow front runs before the brown.
+            let wound = &mut self.nodes[node];
+            wound[BROWN] = wound[BROWN].max(smooth(-0.3, 0.9, depth));
+            wound[PALE] = wound[PALE].max(0.45 * smooth(-3.0, 0.3, depth));
+        }
+    }
+
+    /// Brown spots with a dark rim and a pale halo.
+    pub(super) fn spots(&mut self, count: usize) {
+        for _ in 0..count {
+            let start = self.dart();
+            let centre = self.at(start);
+            let radius = 0.012 * self.breadth * self.uniform(0.3, 1.0).powi(2) * 1.9 + 0.25;
+            let salt = self.rng.bits() as u32;
+            for node in self.lattice.nodes_near(centre, centre, f64::from(3.0 * radius)) {
+                let to = (self.at(node) - centre).as_vec2();
+                let r = radius
+                    * (1.0
+                        + 0.3
+                            * noise::gradient(
+                                to.x / radius * 0.8 + 3.0,
+                                to.y / radius * 0.8,
+                                salt,
+                            ));
+                let depth = r - to.length();
+                let rim = 1.0 - 0.35 * smooth(0.25 * r, 0.7 * r, depth);
+                let wound = &mut self.nodes[node];
+                wound[BROWN] = wound[BROWN].max(rim * smooth(-0.12, 0.12 + 0.1 * r, depth));
+                wound[PALE] = wound[PALE].max(0.4 * smooth(-1.6 * r, 0.0, depth));
+            }
+        }
+    }
+
+    /// Galleries that wind between the veins and widen as their maker grows; it leaves a dark line.
+    pub(super) fn mines(&mut self, count: usize) {
+        for _ in 0..count {
+            let start = self.dart();
+            let mut p = self.at(start);
+            let mut heading = {
+                let turn = Angle::from_degrees(f64::from(self.uniform(0.0, 360.0)));
+                DVec2::new(turn.cos(), turn.sin())
+            };
+            let mut bend = 0.0_f32;
+            let length = self.breadth * self.uniform(0.8, 1.6);
+            let widest = self.breadth * self.uniform(0.008, 0.014);
+            let step = (0.5 * widest).max(self.lattice.spacing() as f32);
+            let steps = (length / step) as usize;
+            for i in 0..steps {
+                let half = widest * (0.15 + 0.85 * i as f32 / steps as f32);
+                let node = self.node_at(p);
+                let place = self.place(node);
+                if place.edge < 0.2 {
+                    break;
+                }
+                // It winds, and turns from larger veins and from the margin.
+                bend = 0.8 * bend + self.uniform(-0.16, 0.16);
+                let near = (2.2 * half / place.major.max(0.3)).min(1.0);
+                let rim = (2.0 * half / place.edge.max(0.3)).min(1.0);
+                let away = self.downhill(node) * f64::from(0.9 * near * near);
+                let inward = -p.normalize_or_zero() + DVec2::Y * 0.4;
+                heading = (heading + heading.perp() * f64::from(bend) - away
+                    + inward * f64::from(0.8 * rim * rim))
+                .normalize_or(heading);
+                let next = p + heading * f64::from(step);
+                self.gallery(p, next, half, i);
+                p = next;
+            }
+        }
+    }
+
+    fn gallery(&mut self, a: DVec2, b: DVec2, half: f32, step: usize) {
+        for node in self.lattice.nodes_near(a, b, f64::from(half + 0.6)) {
+            let p = self.at(node);
+            let distance = polygon::nearest_on_segment(a, b, p).distance(p) as f32;
+            let frass = 0.35 + 0.35 * noise::unit(noise::lattice(step as i32 / 2, 0, self.noise));
+            let wound = &mut self.nodes[node];
+            wound[PALE] = wound[PALE].max(smooth(-0.12, 0.12, half - distance));
+            let line = smooth(-0.1, 0.1, 0.22 * half - distance);
+            wound[BROWN] = wound[BROWN].max(frass * line);
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! What is gone: holes, bites, skeletonised areas, tears.
+
+use glam::DVec2;
+
+use super::{BARE, Blade, GONE};
+use crate::geometry::noise;
+use crate::geometry::polygon;
+
+/// Holes keep so far from the axis of a larger vein, bites from that of a primary one (mm).
+const FROM_MAJOR_MM: f32 = 0.4;
+const FROM_PRIMARY_MM: f32 = 0.9;
+
+impl Blade<'_> {
+    /// Eats holes that stop at the larger veins.
+    pub(super) fn holes(&mut self, share: f64) {
+        let usual = 0.055 * self.breadth * (0.6 + 1.2 * share as f32);
+        self.until(share, GONE, |blade, scale| {
+            let start = blade.dart();
+            let radius = usual * scale * blade.uniform(0.35, 1.5);
+            blade.blob(start, radius, |blade, node| blade.place(node).major - FROM_MAJOR_MM)
+        });
+    }
+
+    /// Leaves only the veins of some areas.
+    pub(super) fn skeletonise(&mut self, share: f64) {
+        if share >= 1.0 {
+            for node in &mut self.nodes {
+                node[BARE] = 10.0;
+            }
+            return;
+        }
+        let usual = 0.13 * self.breadth * (0.6 + 1.2 * share as f32);
+        self.until(share, BARE, |blade, scale| {
+            let start = blade.dart();
+            let radius = usual * scale * blade.uniform(0.5, 1.4);
+            blade.blob(start, radius, |_, _| f32::MAX)
+        });
+    }
+
+    /// A lump of tissue around a node, as deep as `within` allows.
+    fn blob(
+        &mut self,
+        start: usize,
+        radius: f32,
+        within: impl Fn(&Self, usize) -> f32,
+    ) -> Vec<(usize, f32)> {
+        let centre = self.at(start);
+        let salt = self.rng.bits() as u32;
+        let depth = |node: usize| {
+            let to = (self.at(node) - centre).as_vec2();
+            let (u, v) = (to.x / radius, to.y / radius);
+            let lobes = 0.45 * noise::fractal(u * 0.9 + 7.0, v * 0.9, 3, salt);
+            let gnawed = 0.12 * noise::gradient(to.x / 0.7, to.y / 0.7, salt ^ 1);
+            (radius * (1.0 + lobes) - to.length() + gnawed).min(within(self, node))
+        };
+        self.patch(start, depth, 400_000)
+    }
+
+    /// Bites arcs off the margin, one beside the other as a caterpillar does.
+    pub(super) fn bites(&mut self, share: f64) {
+        let outline = self.margin.outline().to_vec();
+        let length: f64 = polygon::edges(&outline).map(|(a, b)| a.distance(b)).sum();
+        let usual = 0.075 * self.breadth * (0.7 + 1.2 * share as f32);
+        // A meal: where it goes on, and how many bites are left of it.
+        let (mut place, mut left) = (0.0, 0);
+        self.until(share, GONE, |blade, scale| {
+            let radius = usual * scale * blade.uniform(0.6, 1.3);
+            if left == 0 {
+                place = blade.rng.between(0.0, length);
+                left = 2 + (blade.rng.bits() % 4) as usize;
+            } else {
+                place += f64::from(radius * blade.uniform(0.7, 1.2));
+            }
+            left -= 1;
+            let (on_margin, inward) = along(&outline, place % length);
+            // The head reaches from beyond the margin.
+            let centre = on_margin + inward * f64::from(radius * blade.uniform(-0.15, 0.45));
+            let salt = blade.rng.bits() as u32;
+            let depth = |node: usize| {
+                let to = (blade.at(node) - centre).as_vec2();
+                let gnawed = 0.10 * noise::gradient(to.x / 0.8, to.y / 0.8, salt);
+                let arc =
+                    radius * (1.0 + 0.08 * noise::gradient(to.x / radius, to.y / radius, salt ^ 3));
+                (arc - to.length() + gnawed).min(blade.primary[node] - FROM_PRIMARY_MM)
+            };
+            blade.patch(blade.node_at(on_margin), depth, 400_000)
+        });
+    }
+
+    /// Tears the blade from the margin towards a primary vein, between the secondaries.
+    pub(super) fn tears(&mut self, count: usize) {
+        let outline = self.margin.outline().to_vec();
+        let length: f64 = polygon::edges(&outline).map(|(a, b)| a.distance(b)).sum();
+        for _ in 0..count {
+            let place = self.rng.between(0.0, length);
+            let (mut p, mut heading) = along(&outline, place);
+            let start = p;
+            let reach = f64::from(self.breadth * self.uniform(0.1, 0.4));
+            let opening = f64::from(self.breadth * self.uniform(0.008, 0.03));
+            let step = self.lattice.spacing() * 1.5;
+            let mut path = vec![start - heading * 2.0 * step, start];
+            let mut gone = 0.0;
+            while gone < reach {
+                let node = self.node_at(p);
+                let place = self.place(node);
+                if self.primary[node] < FROM_PRIMARY_MM || (gone > 4.0 * step && place.edge < 0.0) {
+                    break;
+                }
+                // Away from the veins beside it, and not quite straight.
+                let away = self.downhill(node) * if place.major < 1.2 { 0.35 } else { 0.0 };
+                let wander = f64::from(self.uniform(-0.22, 0.22));
+                heading = (heading + heading.perp() * wander - away).normalize_or(heading);
+                p += heading * step;
+                gone += step;
+                path.push(p);
+            }
+            self.open(&path, opening);
+        }
+    }
+
+    /// The direction in which the larger veins come nearer.
+    pub(super) fn downhill(&self, node: usize) -> DVec2 {
+        let side = self.guide.side();
+        let (x, y) = (node % side, node / side);
+        if x == 0 || y == 0 || x + 1 == side || y + 1 == side {
+            return DVec2::ZERO;
+        }
+        let major = |i: usize| f64::from(self.place(i).major);
+        DVec2::new(major(node - 1) - major(node + 1), major(node + side) - major(node - side))
+            .normalize_or_zero()
+    }
+
+    /// A wedge along a path, `opening` wide where it begins (mm).
+    fn open(&mut self, path: &[DVec2], opening: f64) {
+        let last = (path.len() - 1) as f64;
+        for (i, pair) in path.windows(2).enumerate() {
+            let half = 0.5 * opening * (1.0 - i as f64 / last) + 0.04;
+            for node in self.lattice.nodes_near(pair[0], pair[1], half + 1.0) {
+                let p = self.at(node);
+                let distance = polygon::nearest_on_segment(pair[0], pair[1], p).distance(p);
+                let slot = &mut self.nodes[node][GONE];
+                *slot = slot.max((half - distance) as f32);
+            }
+        }
+    }
+}
+
+/// The point at a distance along a closed line, and the direction inwards (the line runs
+/// anticlockwise).
+fn along(outline: &[DVec2], mut distance: f64) -> (DVec2, DVec2) {
+    let mut last = (outline[0], DVec2::Y);
+    for (a, b) in polygon::edges(outline) {
+        let length = a.distance(b);
+        last = (a.lerp(b, (distance / length).clamp(0.0, 1.0)), (b - a).normalize_or_zero().perp());
+        if distance <= length {
+            break;
+        }
+        distance -= length;
+    }
+    last
+}

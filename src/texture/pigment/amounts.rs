@@ -1,0 +1,308 @@
+//! Pigments as amounts, mixed before they are looked at: what a place holds decides what it sends back
+//! and lets through.
+//!
+//! Chlorophyll, carotenoid and anthocyanin per area, brown, and the number of plates of tissue go
+//! through [`spectrum`](crate::texture::spectrum). Veins hold a share of the chlorophyll in more
+//! plates; the lower side is looser tissue with less of everything under a bloom of wax or hair.
+
+use super::season::Turned;
+use super::shade;
+use super::{
+    BACK, ColourSpec, ColourType, FRONT, Hsv, SPREADING, SenescenceSpec, StateSpec, Tissue,
+};
+use crate::parameter::parameters;
+use crate::raster::color::Tint;
+use crate::texture::lattice::{self, Lattice};
+use crate::texture::petiole::StalkAt;
+use crate::texture::texel::Shade;
+use crate::texture::tissue::smooth;
+
+parameters! {
+    /// Pigments and structure of a tissue. Green leaves hold 25–75 µg/cm² of chlorophyll and a fifth
+    /// of that of carotenoid.
+    pub struct Amounts {
+        /// Chlorophyll.
+        chlorophyll_ug_cm2: number(42.0, 0.0..=120.0, "µg/cm²"),
+        /// Carotenoid: yellow, hidden by chlorophyll.
+        carotenoid_ug_cm2: number(9.0, 0.0..=40.0, "µg/cm²"),
+        /// Anthocyanin: red.
+        anthocyanin_ug_cm2: number(0.7, 0.0..=60.0, "µg/cm²"),
+        /// Brown: 0 living, 1 dead, 2.5 dark litter.
+        brown: number(0.0, 0.0..=3.0, ""),
+        /// Plates of tissue: 1.2 thin and clear, 2.2 thick and pale.
+        structure: number(1.6, 1.0..=3.2, "plates"),
+    }
+}
+
+parameters! {
+    /// Pigments of a blade.
+    pub struct PigmentSpec {
+        /// The tissue.
+        leaf: group(Amounts, Amounts::default()),
+        /// The second tissue, spread by `colour.type`.
+        alternate: group(Amounts, Amounts {
+            chlorophyll_ug_cm2: 9.0,
+            carotenoid_ug_cm2: 6.0,
+            ..Amounts::default()
+        }),
+        /// Chlorophyll in the veins, as a share of the tissue's.
+        vein_chlorophyll: number(0.22, 0.0..=2.0, ""),
+        /// Plates that the largest veins have more than the tissue.
+        vein_structure: number(0.9, 0.0..=2.0, "plates"),
+        /// Chlorophyll of the lower side, as a share of the upper one's.
+        back_chlorophyll: number(0.55, 0.0..=2.0, ""),
+        /// Plates that the lower side has more.
+        back_structure: number(0.4, 0.0..=2.0, "plates"),
+        /// Bloom of the lower side, wax or hair: 0 none, 1 white.
+        back_bloom: number(0.12, 0.0..=1.0, ""),
+        /// Brown of the lower side: the rusty felt of some leaves.
+        back_brown: number(0.0, 0.0..=3.0, ""),
+        /// Bloom of the upper side.
+        front_bloom: number(0.0, 0.0..=1.0, ""),
+        /// Anthocyanin of a leaf that has just unfolded.
+        flush_anthocyanin_ug_cm2: number(0.4, 0.0..=60.0, "µg/cm²"),
+        /// How it turns in autumn.
+        autumn: group(SenescenceSpec, SenescenceSpec::default()),
+    }
+}
+
+impl Amounts {
+    /// Chlorophyll, carotenoid, anthocyanin, brown, structure.
+    #[must_use]
+    pub fn of([chlorophyll, carotenoid, anthocyanin, brown, structure]: [f64; 5]) -> Self {
+        Self {
+            chlorophyll_ug_cm2: chlorophyll,
+            carotenoid_ug_cm2: carotenoid,
+            anthocyanin_ug_cm2: anthocyanin,
+            brown,
+            structure,
+        }
+    }
+
+    /// The inverse of [`of`](Self::of).
+    #[must_use]
+    pub fn array(&self) -> [f64; 5] {
+        [
+            self.chlorophyll_ug_cm2,
+            self.carotenoid_ug_cm2,
+            self.anthocyanin_ug_cm2,
+            self.brown,
+            self.structure,
+        ]
+    }
+}
+
+/// Amounts at one place: chlorophyll, carotenoid, anthocyanin, brown, structure.
+type Mix = [f32; 5];
+
+/// Dead tissue, and tissue of which only the skins are left.
+const DEAD: Mix = [0.4, 3.0, 0.1, 1.6, 2.1];
+const MINED: Mix = [1.8, 2.2, 0.3, 0.12, 2.2];
+
+/// A bloom is this white (sRGB).
+const BLOOM: f32 = 0.80;
+
+/// Chlorophyll is faded where its colour changes evenly: in c / (c + this).
+const HALF_GREEN: f32 = 12.0;
+
+/// Places of the season that are worked out beforehand.
+const SEASONS: usize = 256;
+
+/// Mixes the pigments of a leaf.
+#[derive(Debug)]
+pub(in crate::texture) struct Mixer {
+    lattice: &'static Lattice,
+    r#type: ColourType,
+    per_spread_mm: f32,
+    undertone: f32,
+    mottle: f32,
+    leaf: Mix,
+    alternate: Mix,
+    vein_chlorophyll: f32,
+    vein_structure: f32,
+    back_chlorophyll: f32,
+    back_structure: f32,
+    back_bloom: f32,
+    back_brown: f32,
+    front_bloom: f32,
+    /// Chlorophyll's colour, and the other pigments, of a leaf this young, as shares.
+    young: [f32; 2],
+    flush: f32,
+    seasons: Vec<Turned>,
+    petiole: Tint,
+    petiole_reach: f32,
+}
+
+impl Mixer {
+    pub(super) fn new(
+        spec: &ColourSpec,
+        state: &StateSpec,
+        petiole: &Hsv,
+        petiole_reach: f32,
+    ) -> Self {
+        let pigments = &spec.pigments;
+        let mix = |amounts: &Amounts| amounts.array().map(|v| v as f32);
+        let youth = 1.0 - state.maturity as f32;
+        let season = |i: usize| Turned::at(i as f32 / (SEASONS - 1) as f32, &pigments.autumn);
+        // A petiole dries with the leaf it carries.
+        let dry = smooth(0.6, 1.0, state.season as f32);
+        let petiole = petiole.tint();
+        let dead = Tint { hue: 28.0, saturation: 0.42, value: 0.38 }.unrolled(petiole);
+        Self {
+            lattice: lattice::of(spec.albedo),
+            r#type: spec.r#type,
+            per_spread_mm: 1.0 / (spec.spread_mm as f32).max(1e-6),
+            undertone: spec.undertone as f32,
+            mottle: spec.mottle as f32,
+            leaf: mix(&pigments.leaf),
+            alternate: mix(&pigments.alternate),
+            vein_chlorophyll: pigments.vein_chlorophyll as f32,
+            vein_structure: pigments.vein_structure as f32,
+            back_chlorophyll: pigments.back_chlorophyll as f32,
+            back_structure: pigments.back_structure as f32,
+            back_bloom: pigments.back_bloom as f32,
+            back_brown: pigments.back_brown as f32,
+            front_bloom: pigments.front_bloom as f32,
+            young: [1.0 - 0.33 * youth, 1.0 - 0.5 * youth],
+            flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
+            seasons: (0..SEASONS).map(season).collect(),
+            petiole: petiole.towards(dead, dry),
+            petiole_reach,
+        }
+    }
+
+    /// What is seen of both sides of the blade, and through them.
+    #[inline]
+    pub(super) fn blade(&self, tissue: &Tissue) -> [Shade; 2] {
+        let lamina = self.lamina(tissue);
+        let vein = self.vein(tissue, &lamina);
+        let share = |face| {
+            let [net, seen] = tissue.veins_seen(face, self.mottle);
+            seen.max(0.8 * net).min(1.0)
+        };
+        let above = mixed(lamina, vein, share(&FRONT));
+        let mut below = mixed(lamina, vein, share(&BACK));
+        below[0] *= self.back_chlorophyll;
+        below[1] *= 0.5 + 0.5 * self.back_chlorophyll;
+        below[2] *= 0.25 + 0.5 * self.back_chlorophyll;
+        below[3] = 0.85 * below[3] + self.back_brown;
+        below[4] += self.back_structure;
+        let [r, g, b, tr, tg, tb, ..] = self.lattice.at(above);
+        let [br, bg, bb, ..] = self.lattice.at(below);
+        // Light meets the same tissue from either side; a bloom sends some of it back.
+        let bloom = self.back_bloom * (1.0 - 0.4 * share(&BACK)) * (1.0 - tissue.injury.brown);
+        let white = |value: f32, bloom: f32| value + (BLOOM - value) * bloom;
+        let through = [tr, tg, tb].map(|value| value * (1.0 - 0.5 * bloom));
+        let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
+        let front = [r, g, b].map(|value| white(value, self.front_bloom));
+        let front = Shade { reflected: front, through };
+        let back = Shade { reflected: [br, bg, bb].map(|value| white(value, bloom)), through };
+        if near == 0.0 {
+            return [front, back];
+        }
+        // The midrib takes the petiole's colour at the base.
+        let petiole = shade(self.petiole, 0.3);
+        [(front, &FRONT), (back, &BACK)].map(|(shade, face)| {
+            shade.mixed(petiole, 0.55 * near * tissue.veins_seen(face, self.mottle)[1])
+        })
+    }
+
+    /// The tissue between the veins.
+    #[inline]
+    fn lamina(&self, tissue: &Tissue) -> Mix {
+        let m = self.mottle;
+        // The scheme chosen, and the others faintly: deeper green beside veins, thinner towards the
+        // margin, a trace of brown in spots.
+        let mut mix = self.leaf;
+        let (mut green, mut brown) = (1.0, 0.0);
+        let weights = tissue.weights(self.per_spread_mm, m);
+        for (i, (w, r#type)) in weights.into_iter().zip(SPREADING).enumerate() {
+            if r#type == self.r#type {
+                mix = mixed(mix, self.alternate, w);
+            } else {
+                let w = w * self.undertone;
+                match i {
+                    0 => green *= 1.0 + 1.1 * w,
+                    1 => green *= 1.0 - 0.5 * w,
+                    _ => brown += 0.25 * w,
+                }
+            }
+        }
+        // No two areoles hold the same; green tissue thickens beside a vein, and thins at the rim.
+        let [broad, middle, fine] = tissue.place.noise;
+        green *= 1.0 - (1.7 * m * tissue.unevenness()).clamp(-0.8, 0.7);
+        green *= 1.0 + 0.7 * tissue.flank();
+        let rim = 1.0 - smooth(0.05, 0.45, tissue.place.edge);
+        green *= 1.0 - 0.35 * rim;
+        mix[0] *= green;
+        mix[1] *= 1.0 + 0.3 * m * (middle - broad);
+        mix[2] *= 1.0 + m * (0.8 * middle + 0.5 * fine);
+        mix[3] += brown;
+        mix[4] += 0.15 * m * fine + 0.1 * rim;
+        self.aged(mix, tissue, 1.0 + 0.9 * m * (broad + 0.5 * middle))
+    }
+
+    /// Youth, season, sickness and injuries, in the order in which they come. `red` is how readily
+    /// this place reddens.
+    #[inline]
+    fn aged(&self, mut mix: Mix, tissue: &Tissue, red: f32) -> Mix {
+        let condition = &tissue.condition;
+        let turned = self.turned(condition.season);
+        // Chlorophyll fades where its colour changes evenly.
+        let left = turned.chlorophyll * self.young[0] * (1.0 - 0.92 * condition.chlorosis);
+        let green = mix[0] / (mix[0] + HALF_GREEN) * left;
+        mix[0] = HALF_GREEN * green / (1.0 - green);
+        mix[1] *= turned.carotenoid * self.young[1] * (1.0 - 0.3 * condition.chlorosis);
+        mix[2] *= self.young[1];
+        mix[2] += turned.anthocyanin * red.max(0.2) + self.flush * red.max(0.4);
+        mix[3] += turned.brown;
+        mix[4] += turned.structure;
+        mix = mixed(mix, DEAD, condition.death);
+        mix = mixed(mix, MINED, tissue.injury.pale);
+        mixed(mix, DEAD, tissue.injury.brown)
+    }
+
+    #[inline]
+    fn turned(&self, season: f32) -> Turned {
+        let place = season.clamp(0.0, 1.0) * (SEASONS - 1) as f32;
+        let i = (place as usize).min(SEASONS - 2);
+        let (a, b, t) = (&self.seasons[i], &self.seasons[i + 1], place - i as f32);
+        let mix = |a: f32, b: f32| a + (b - a) * t;
+        Turned {
+            chlorophyll: mix(a.chlorophyll, b.chlorophyll),
+            carotenoid: mix(a.carotenoid, b.carotenoid),
+            anthocyanin: mix(a.anthocyanin, b.anthocyanin),
+            brown: mix(a.brown, b.brown),
+            structure: mix(a.structure, b.structure),
+        }
+    }
+
+    /// A vein in such tissue: pale, the larger the paler, and brown before the tissue is.
+    #[inline]
+    fn vein(&self, tissue: &Tissue, lamina: &Mix) -> Mix {
+        let large = tissue.vein.radius / (tissue.vein.radius + 0.15);
+        let crest = tissue.roundness();
+        [
+            lamina[0] * self.vein_chlorophyll,
+            lamina[1] * (0.35 + 0.3 * self.vein_chlorophyll),
+            lamina[2] * 0.6,
+            lamina[3] * 0.75 + 0.02,
+            lamina[4] + self.vein_structure * (0.45 + 0.35 * large + 0.2 * crest),
+        ]
+    }
+
+    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> [Shade; 2] {
+        let round = stalk.dome / stalk.radius.max(1e-6);
+        let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));
+        let mut tint = self.petiole;
+        tint.hue -= 14.0 * stem;
+        tint.value *=
+            (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.2 * self.mottle * grain);
+        [shade(tint, 0.3); 2]
+    }
+}
+
+#[inline]
+fn mixed(a: Mix, b: Mix, share: f32) -> Mix {
+    std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
+}

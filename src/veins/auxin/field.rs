@@ -1,0 +1,403 @@
+//! The living sources, in order of place.
+//!
+//! A new node asks which sources it matters to: those in the cells around it that know of nothing as
+//! near. A cell's sources lie together in memory, so that asking is a walk over a few short runs. Not
+//! kiddo's static tree, though sources stand still: a search in it finds the dead and the well-served
+//! too, one by one, and took 0.14 of the 0.31 seconds in which 100 000 sources were served; here it
+//! takes 0.02.
+
+mod offer;
+
+use glam::DVec2;
+
+use super::NONE;
+use crate::geometry::Rect;
+use crate::veins::graph::NodeId;
+
+/// In place of the distance from which on a node does not matter, for a dead source.
+pub(super) const DEAD: f64 = -1.0;
+
+/// Newborn sources stand in lists until there are this many, or half as many as in the runs.
+const NEWBORN: usize = 64;
+
+/// Runs are made anew when less than this share of them is alive: every search passes the dead.
+const THINNED: f64 = 0.5;
+
+/// Sources in a cell, at most about: more make searches pass over what is far.
+const IN_A_CELL: f64 = 16.0;
+
+/// Cells for each source, at most about: more would be empty.
+const CELLS_A_SOURCE: f64 = 4.0;
+
+/// A source and what it knows of the nodes.
+#[derive(Debug)]
+pub(super) struct Source<S> {
+    pub(super) id: u32,
+    /// Whether it is in the list of those in reach, or about to be.
+    pub(super) is_acting: bool,
+    pub(super) state: S,
+}
+
+/// A source that a new node may matter to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hit {
+    pub(super) slot: u32,
+    pub(super) node: NodeId,
+    /// Squared distance of the node.
+    pub(super) distance2: f64,
+}
+
+/// What a source makes of a new node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Told {
+    /// From how far (squared) on nodes do not matter now; [`DEAD`] if it died of it.
+    pub(super) bound2: f64,
+    /// Whether whoever asks is to hear of it.
+    pub(super) is_marked: bool,
+}
+
+/// Ids of sources to which something happened.
+#[derive(Debug, Default)]
+struct News {
+    arrived: Vec<u32>,
+    dead: Vec<u32>,
+    marked: Vec<u32>,
+}
+
+/// Sources by place. Each is known by its id, the order of births, and stands in a slot, which
+/// changes.
+#[derive(Debug)]
+pub(super) struct Field<S> {
+    bounds: Rect,
+    /// The slot of each source, by id; [`NONE`] for the dead.
+    slots: Vec<u32>,
+    places: Vec<DVec2>,
+    /// By slot: from this far (squared) on a node does not matter; [`DEAD`] at the end.
+    bound2: Vec<f64>,
+    sources: Vec<Source<S>>,
+    cells: Cells,
+    living: usize,
+    /// Sources in reach of a node, ascending.
+    acting: Vec<u32>,
+    /// Sources that came into reach since they were last merged with those.
+    arrived: Vec<u32>,
+    /// Sources that died since they were last taken.
+    dead: Vec<u32>,
+    news: News,
+    /// What new nodes found, by thread; kept for its memory.
+    finds: Vec<offer::Finds>,
+}
+
+impl<S> Field<S> {
+    pub(super) fn new(bounds: Rect) -> Self {
+        Self {
+            bounds,
+            slots: Vec::new(),
+            places: Vec::new(),
+            bound2: Vec::new(),
+            sources: Vec::new(),
+            cells: Cells::new(bounds, f64::INFINITY),
+            living: 0,
+            acting: Vec::new(),
+            arrived: Vec::new(),
+            dead: Vec::new(),
+            news: News::default(),
+            finds: Vec::new(),
+        }
+    }
+
+    pub(super) fn bounds(&self) -> Rect {
+        self.bounds
+    }
+
+    /// Sources that ever were.
+    pub(super) fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Sources that are left.
+    pub(super) fn living(&self) -> usize {
+        self.living
+    }
+
+    /// Adds a source to which nodes from a squared distance of `bound2` on do not matter; its id.
+    pub(super) fn add(&mut self, p: DVec2, bound2: f64, is_acting: bool, state: S) -> u32 {
+        let id = self.slots.len() as u32;
+        self.slots.push(self.places.len() as u32);
+        self.cells.add(p);
+        self.places.push(p);
+        self.bound2.push(bound2);
+        self.sources.push(Source { id, is_acting, state });
+        self.living += 1;
+        if is_acting {
+            self.arrived.push(id);
+        }
+        id
+    }
+
+    /// Adds a source that is used up already, so that those after it keep their ids.
+    pub(super) fn add_spent(&mut self) {
+        self.slots.push(NONE);
+    }
+
+    /// Where a source stands, if it is alive.
+    pub(super) fn slot(&self, id: u32) -> Option<usize> {
+        let slot = self.slots[id as usize];
+        (slot != NONE).then_some(slot as usize)
+    }
+
+    pub(super) fn place(&self, slot: usize) -> DVec2 {
+        self.places[slot]
+    }
+
+    pub(super) fn source(&self, slot: usize) -> &Source<S> {
+        &self.sources[slot]
+    }
+
+    pub(super) fn state(&self, slot: usize) -> &S {
+        &self.sources[slot].state
+    }
+
+    pub(super) fn state_mut(&mut self, slot: usize) -> &mut S {
+        &mut self.sources[slot].state
+    }
+
+    pub(super) fn set_bound2(&mut self, slot: usize, bound2: f64) {
+        self.bound2[slot] = bound2;
+    }
+
+    /// Takes note that no node is in reach of a source any more.
+    pub(super) fn retire(&mut self, slot: usize) {
+        self.sources[slot].is_acting = false;
+    }
+
+    /// The slots of the living.
+    pub(super) fn living_slots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.places.len()).filter(|&slot| self.bound2[slot] != DEAD)
+    }
+
+    pub(super) fn kill(&mut self, slot: usize) {
+        if self.bound2[slot] != DEAD {
+            self.bound2[slot] = DEAD;
+            let id = self.sources[slot].id;
+            self.slots[id as usize] = NONE;
+            self.living -= 1;
+            self.dead.push(id);
+        }
+    }
+
+    /// The ids of those that died since this was last asked.
+    pub(super) fn take_dead(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.dead)
+    }
+
+    /// The ids of the sources in reach, ascending, to be given back to [`set_acting`](Self::set_acting).
+    pub(super) fn take_acting(&mut self) -> Vec<u32> {
+        self.arrived.sort_unstable();
+        let mut acting = std::mem::take(&mut self.acting);
+        merge(&mut acting, &self.arrived);
+        self.arrived.clear();
+        acting
+    }
+
+    /// The same.
+    pub(super) fn acting(&self) -> &[u32] {
+        &self.acting
+    }
+
+    pub(super) fn set_acting(&mut self, acting: Vec<u32>) {
+        self.acting = acting;
+    }
+
+    /// Puts the sources in order of place once enough were born or died since, for searches that
+    /// reach as far as `reach`.
+    pub(super) fn keep_order(&mut self, reach: DVec2) {
+        let size = self.bounds.size();
+        let area = size.x * size.y;
+        let count = self.living as f64;
+        let width = (reach.min_element() / 2.0)
+            .min((area * IN_A_CELL / count.max(1.0)).sqrt())
+            .max((area / (CELLS_A_SOURCE * count + 64.0)).sqrt());
+        let newborn = self.cells.newborn();
+        let sorted = self.places.len() - newborn;
+        let alive = self.living.saturating_sub(newborn) as f64;
+        let is_stale = newborn > NEWBORN.max(sorted / 2)
+            || alive < THINNED * sorted as f64
+            || width * 2.0 < self.cells.width;
+        if is_stale {
+            self.sort(width);
+        }
+    }
+
+    /// Drops the dead and puts the living in order of cell and, in a cell, of slot.
+    fn sort(&mut self, width: f64) {
+        let mut cells = Cells::new(self.bounds, width);
+        let alive = |slot: &u32| self.bound2[*slot as usize] != DEAD;
+        let living: Vec<u32> = (0..self.places.len() as u32).filter(alive).collect();
+        let order = cells.sort(&living, &self.places);
+        self.places = order.iter().map(|&slot| self.places[slot as usize]).collect();
+        self.bound2 = order.iter().map(|&slot| self.bound2[slot as usize]).collect();
+        let mut before: Vec<Option<Source<S>>> = self.sources.drain(..).map(Some).collect();
+        self.sources = order.iter().filter_map(|&slot| before[slot as usize].take()).collect();
+        for (slot, source) in self.sources.iter().enumerate() {
+            self.slots[source.id as usize] = slot as u32;
+        }
+        self.cells = cells;
+    }
+
+    /// Columns and rows of the cells, and their width.
+    pub(super) fn cells(&self) -> (usize, usize, f64) {
+        (self.cells.columns, self.cells.rows, self.cells.width)
+    }
+
+    /// The middle of a cell.
+    pub(super) fn middle(&self, row: usize, column: usize) -> DVec2 {
+        self.cells.min + (DVec2::new(column as f64, row as f64) + 0.5) * self.cells.width
+    }
+
+    fn slots_in(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + '_ {
+        self.cells.run(row, column, column).chain(self.cells.newborn_in(row, column))
+    }
+
+    /// From this far (squared) on a node matters to none of the sources in a cell; [`DEAD`] when there
+    /// is none.
+    pub(super) fn bound2_of_cell(&self, row: usize, column: usize) -> f64 {
+        self.slots_in(row, column).map(|slot| self.bound2[slot]).fold(DEAD, f64::max)
+    }
+
+    /// Collects the slots of the living in a cell.
+    pub(super) fn members(&self, row: usize, column: usize, members: &mut Vec<u32>) {
+        let alive = |slot: &usize| self.bound2[*slot] != DEAD;
+        members.extend(self.slots_in(row, column).filter(alive).map(|slot| slot as u32));
+    }
+
+    /// Tells a source of one node.
+    pub(super) fn tell(&mut self, hit: Hit, hear: impl Fn(Hit, DVec2, &mut S) -> Told) {
+        let Self { places, bound2, sources, news, .. } = self;
+        offer::Part { first: 0, places, bound2, sources }.tell(hit, hear, news);
+        self.settle_news();
+    }
+
+    /// Takes note of what came of telling.
+    fn settle_news(&mut self) {
+        self.arrived.append(&mut self.news.arrived);
+        for &id in &self.news.dead {
+            self.slots[id as usize] = NONE;
+        }
+        self.living -= self.news.dead.len();
+        self.dead.append(&mut self.news.dead);
+    }
+}
+
+/// Square cells over the blade: the slots that were sorted into each, and the newborn after them.
+#[derive(Debug)]
+struct Cells {
+    min: DVec2,
+    width: f64,
+    per_width: f64,
+    columns: usize,
+    rows: usize,
+    /// Where the run of each cell starts.
+    starts: Vec<u32>,
+    /// The last newborn of each cell.
+    heads: Vec<u32>,
+    /// For each newborn, the one before it in its cell.
+    nexts: Vec<u32>,
+}
+
+impl Cells {
+    fn new(bounds: Rect, width: f64) -> Self {
+        let size = bounds.size();
+        let per_width = 1.0 / width;
+        let (columns, rows) =
+            ((size.x * per_width) as usize + 1, (size.y * per_width) as usize + 1);
+        Self {
+            min: bounds.min,
+            width,
+            per_width,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            heads: vec![NONE; columns * rows],
+            nexts: Vec::new(),
+        }
+    }
+
+    fn column(&self, x: f64) -> usize {
+        (((x - self.min.x) * self.per_width).max(0.0) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.min.y) * self.per_width).max(0.0) as usize).min(self.rows - 1)
+    }
+
+    fn home(&self, p: DVec2) -> usize {
+        self.row(p.y) * self.columns + self.column(p.x)
+    }
+
+    /// Adds a newborn.
+    fn add(&mut self, p: DVec2) {
+        let home = self.home(p);
+        self.nexts.push(self.heads[home]);
+        self.heads[home] = self.nexts.len() as u32 - 1;
+    }
+
+    fn newborn(&self) -> usize {
+        self.nexts.len()
+    }
+
+    /// Sorts slots into the cells; the order in which they are to stand.
+    fn sort(&mut self, slots: &[u32], places: &[DVec2]) -> Vec<u32> {
+        let homes: Vec<u32> =
+            slots.iter().map(|&slot| self.home(places[slot as usize]) as u32).collect();
+        for &home in &homes {
+            self.starts[home as usize] += 1;
+        }
+        // From counts to ends; filling from the back turns ends into starts.
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+        let mut order = vec![0; slots.len()];
+        for (&slot, &home) in slots.iter().zip(&homes).rev() {
+            let start = &mut self.starts[home as usize];
+            *start -= 1;
+            order[*start as usize] = slot;
+        }
+        order
+    }
+
+    /// The slots sorted into the cells of a row, from column to column.
+    fn run(&self, row: usize, first: usize, last: usize) -> std::ops::Range<usize> {
+        let at = row * self.columns;
+        self.starts[at + first] as usize..self.starts[at + last + 1] as usize
+    }
+
+    /// The slots of the newborn in a cell.
+    fn newborn_in(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + '_ {
+        let sorted = self.starts[self.columns * self.rows] as usize;
+        let entry = |at: u32| (at != NONE).then_some(at);
+        let head = entry(self.heads[row * self.columns + column]);
+        std::iter::successors(head, move |&at| entry(self.nexts[at as usize]))
+            .map(move |at| sorted + at as usize)
+    }
+}
+
+/// Merges an ascending list into another, from the back and in place.
+fn merge(into: &mut Vec<u32>, other: &[u32]) {
+    let (mut a, mut b) = (into.len(), other.len());
+    into.resize(a + b, 0);
+    for at in (0..a + b).rev() {
+        if b == 0 {
+            break;
+        }
+        if a > 0 && into[a - 1] > other[b - 1] {
+            a -= 1;
+            into[at] = into[a];
+        } else {
+            b -= 1;
+            into[at] = other[b];
+        }
+    }
+}

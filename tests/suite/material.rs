@@ -1,0 +1,299 @@
+//! What the material promises: light that is not made from nothing, seasons that move colours only,
+//! films without jumps, wounds that all maps agree on.
+
+use glam::DVec2;
+use palette::{FromColor, Lab, Srgb};
+use venation::geometry::polygon::signed_area;
+use venation::texture::damage::DamageSpec;
+use venation::texture::pigment::{Albedo, ColourType};
+use venation::texture::{Style, TextureSet};
+
+use crate::sample_leaf;
+use crate::support::{contents, fail, fresh, succeed};
+use crate::textures::Settings;
+
+fn painted(settings: &Settings) -> TextureSet {
+    let margin = sample_leaf::ovate(60.0);
+    settings.painted(&margin, &sample_leaf::veins(&margin))
+}
+
+fn linear(byte: u8) -> f64 {
+    let value = f64::from(byte) / 255.0;
+    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+fn mean(set: &TextureSet) -> [f64; 3] {
+    let opaque: Vec<_> = set.front.base_colour.values().iter().filter(|c| c[3] == 255).collect();
+    std::array::from_fn(|k| {
+        opaque.iter().map(|colour| f64::from(colour[k])).sum::<f64>() / opaque.len() as f64
+    })
+}
+
+#[test]
+fn no_texel_sends_back_and_lets_through_more_light_than_falls_on_it() {
+    for (season, health, maturity) in
+        [(0.0, 1.0, 1.0), (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (0.2, 0.2, 0.1)]
+    {
+        let mut settings = Settings::of_size(128);
+        settings.state.season = season;
+        settings.state.health = health;
+        settings.state.maturity = maturity;
+        settings.damage =
+            DamageSpec { mines: 0.6, spots: 0.5, scorch: 0.3, ..DamageSpec::default() };
+        settings.colour.pigments.back_bloom = 0.5;
+        let set = painted(&settings);
+        for side in [&set.front, &set.back] {
+            let texels = side.base_colour.values().iter().zip(side.translucency.values());
+            for (back, through) in texels {
+                for c in 0..3 {
+                    let sum = linear(back[c]) + linear(through[c]);
+                    assert!(sum <= 1.005, "season {season}: {back:?} {through:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_green_leaf_is_as_light_and_as_green_as_leaves_are() {
+    // Bands of total reflectance of dark to mid green leaves.
+    let set = painted(&Settings::of_size(128));
+    let [r, g, b] = mean(&set).map(|v| (v / 255.0) as f32);
+    let lab: Lab = Lab::from_color(Srgb::new(r, g, b));
+    assert!((32.0..47.0).contains(&lab.l), "{lab:?}");
+    assert!((-22.0..-10.0).contains(&lab.a) && (12.0..33.0).contains(&lab.b), "{lab:?}");
+}
+
+#[test]
+fn the_season_moves_colours_from_green_to_brown_and_nothing_else() {
+    let at = |season| {
+        let mut settings = Settings::of_size(128);
+        settings.state.season = season;
+        painted(&settings)
+    };
+    let summer = at(0.0);
+    let mut hue = f64::INFINITY;
+    for season in [0.0, 0.25, 0.5] {
+        let set = at(season);
+        let next = hue_deg(&set);
+        assert!(next < hue - 5.0, "{season}: {next} after {hue}");
+        hue = next;
+        assert!(set.front.height == summer.front.height && set.back.normal == summer.back.normal);
+        assert!(set.front.vein_mask == summer.front.vein_mask);
+        let covers = set.front.base_colour.values().iter().zip(summer.front.base_colour.values());
+        assert!(covers.into_iter().all(|(a, b)| a[3] == b[3]));
+    }
+    assert!((25.0..60.0).contains(&hue), "half way it is yellow to orange: {hue}");
+    let [r, g, b] = mean(&at(1.0));
+    assert!(r > g && g > b && r < 170.0, "litter is brown: {r} {g} {b}");
+    // A dry leaf is rougher.
+    let rough =
+        |set: &TextureSet| set.front.roughness.values().iter().map(|&v| u64::from(v)).sum::<u64>();
+    assert!(rough(&at(1.0)) > rough(&summer));
+}
+
+#[test]
+fn tissue_along_the_larger_veins_stays_green_longest() {
+    let mut settings = Settings::of_size(384);
+    settings.state.season = 0.5;
+    settings.colour.pigments.autumn.islands = 0.0;
+    let set = painted(&settings);
+    let per_mm = set.frame.pixels_per_mm(384);
+    // Along the midrib at half length, and as far from veins as the leaf allows beside it.
+    let at = |x: f64| {
+        let p = set.frame.pixel_from_leaf(DVec2::new(x, 30.0), 384);
+        let [r, g, ..] = set.front.base_colour[(p.x as usize, p.y as usize)];
+        f64::from(g) / f64::from(r)
+    };
+    let near: f64 = (0..12).map(|i| at(1.2 + f64::from(i) / per_mm)).sum();
+    let far: f64 = (0..12).map(|i| at(9.0 + f64::from(i) / per_mm)).sum();
+    assert!(near > far, "{near} {far}");
+}
+
+#[test]
+fn sixty_frames_of_a_season_move_no_texel_by_more_than_eight() {
+    for (anthocyanin, r#type) in [(0.5, ColourType::Uniform), (28.0, ColourType::FromEdges)] {
+        let mut settings = Settings::of_size(96);
+        settings.colour.pigments.autumn.anthocyanin_ug_cm2 = anthocyanin;
+        settings.colour.r#type = r#type;
+        let mut last: Option<TextureSet> = None;
+        for frame in 0..60 {
+            settings.state.season = f64::from(frame) / 59.0;
+            let set = painted(&settings);
+            if let Some(last) = last {
+                for (a, b) in [(&last.front, &set.front), (&last.back, &set.back)] {
+                    for (a, b) in a.base_colour.values().iter().zip(b.base_colour.values()) {
+                        let jump = (0..4).map(|c| a[c].abs_diff(b[c])).max();
+                        assert!(jump <= Some(8), "frame {frame}: {a:?} {b:?}");
+                    }
+                    for (a, b) in a.translucency.values().iter().zip(b.translucency.values()) {
+                        let jump = (0..3).map(|c| a[c].abs_diff(b[c])).max();
+                        assert!(jump <= Some(8), "frame {frame}, through: {a:?} {b:?}");
+                    }
+                }
+            }
+            last = Some(set);
+        }
+    }
+}
+
+#[test]
+fn sickness_yellows_and_youth_is_lighter() {
+    let with = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = Settings::of_size(96);
+        change(&mut settings);
+        mean(&painted(&settings))
+    };
+    let [r, g, _] = with(&|_| {});
+    let [sick_r, sick_g, _] = with(&|s| s.state.health = 0.5);
+    assert!(sick_r / sick_g > r / g && sick_r > r + 10.0);
+    let [_, young, _] = with(&|s| s.state.maturity = 0.0);
+    assert!(young > g + 5.0, "{young} {g}");
+}
+
+#[test]
+fn a_diffuse_base_colour_is_the_total_less_the_surface() {
+    let mut settings = Settings::of_size(64);
+    let total = painted(&settings);
+    settings.colour.albedo = Albedo::Diffuse;
+    let diffuse = painted(&settings);
+    assert_eq!((total.albedo, diffuse.albedo), (Albedo::Total, Albedo::Diffuse));
+    let pairs = total.front.base_colour.values().iter().zip(diffuse.front.base_colour.values());
+    let blade = pairs.filter(|(a, _)| a[3] == 255 && a[1] > a[0]).collect::<Vec<_>>();
+    assert!(blade.len() > 500);
+    let surface = |c: usize| {
+        blade.iter().map(|(a, b)| linear(a[c]) - linear(b[c])).sum::<f64>() / blade.len() as f64
+    };
+    assert!((0.030..0.046).contains(&surface(1)), "{}", surface(1));
+}
+
+/// Of the mean colour, as long as red or green is the greatest and blue the least.
+fn hue_deg(set: &TextureSet) -> f64 {
+    let [r, g, b] = mean(set);
+    let spread = r.max(g) - b;
+    if r >= g { 60.0 * (g - b) / spread } else { 60.0 * (2.0 - (r - b) / spread) }
+}
+
+fn cover(set: &TextureSet) -> f64 {
+    let texels = set.front.base_colour.values().iter();
+    texels.map(|colour| f64::from(colour[3]) / 255.0).sum()
+}
+
+#[test]
+fn wounds_take_the_share_they_are_asked_for_and_spare_what_they_should() {
+    let mut settings = Settings::of_size(512);
+    settings.petiole.length_mm = 0.0;
+    let whole = painted(&settings);
+    for (wound, damage) in [
+        ("holes", DamageSpec { holes: 0.2, ..DamageSpec::default() }),
+        ("bites", DamageSpec { margin_bites: 0.25, ..DamageSpec::default() }),
+    ] {
+        settings.damage = damage;
+        let hurt = painted(&settings);
+        let share = 1.0 - cover(&hurt) / cover(&whole);
+        let asked = settings.damage.holes + settings.damage.margin_bites;
+        assert!((share / asked - 1.0).abs() < 0.15, "{wound}: {share} for {asked}");
+        // Both sides and all maps agree, and the outline does.
+        assert_eq!(hurt.check(), None);
+        let rings: f64 = hurt.rings.iter().map(|ring| signed_area(ring)).sum();
+        let area = cover(&hurt) / hurt.frame.pixels_per_mm(512).powi(2);
+        assert!((rings / area - 1.0).abs() < 0.02, "{wound}: {rings} {area}");
+        let order = hurt.front.vein_order.values();
+        for (i, colour) in hurt.front.base_colour.values().iter().enumerate() {
+            if colour[3] == 0 {
+                assert_eq!((order[i], hurt.front.vein_mask.values()[i]), (0, 0));
+                assert_eq!(hurt.front.thickness.values()[i], 0);
+            }
+        }
+        // Primary veins stand.
+        let primary = whole.front.vein_order.values().iter().zip(whole.front.vein_mask.values());
+        let stands = |((&order, &mask), after): ((&u8, &u8), &[u8; 4])| {
+            order != 1 || mask < 255 || after[3] == 255
+        };
+        assert!(primary.zip(hurt.front.base_colour.values()).all(stands), "{wound}");
+        // Elsewhere it is the same leaf: texels far from every wound have not changed.
+        let pairs = whole.front.base_colour.values().iter().zip(hurt.front.base_colour.values());
+        let same = pairs.filter(|(a, b)| a[3] == 255 && a == b).count();
+        assert!(same as f64 > 0.4 * cover(&whole), "{wound}: {same}");
+    }
+}
+
+#[test]
+fn skeletons_keep_their_veins_and_another_seed_wounds_elsewhere() {
+    let mut settings = Settings::of_size(384);
+    settings.damage.skeletonise = 1.0;
+    let bare = painted(&settings);
+    let whole = painted(&Settings::of_size(384));
+    assert!(cover(&bare) < 0.75 * cover(&whole) && cover(&bare) > 0.05 * cover(&whole));
+    let veins = whole.front.vein_mask.values().iter().zip(bare.front.base_colour.values());
+    let kept: Vec<u8> = veins.filter(|(mask, _)| **mask == 255).map(|(_, c)| c[3]).collect();
+    assert!(kept.len() > 100 && kept.iter().all(|&alpha| alpha == 255));
+    settings.damage = DamageSpec { holes: 0.1, ..DamageSpec::default() };
+    let own = painted(&settings);
+    settings.damage.seed = 9;
+    assert!(painted(&settings).rings != own.rings);
+}
+
+#[test]
+fn the_preview_is_lit_and_the_enhancement_has_six_steps() {
+    let mut settings = Settings::of_size(64);
+    let set = painted(&settings);
+    assert_eq!((set.front.preview.width(), set.front.preview.height()), (192, 64));
+    assert!(set.back.preview.values().is_empty());
+    // Against the light the paper is dark and the leaf shines.
+    let [paper, ..] = set.front.preview[(0, 0)];
+    let [dusk, ..] = set.front.preview[(191, 0)];
+    assert!(paper > 200 && dusk < 80);
+    assert_eq!((set.back.enhancement.width(), set.back.enhancement.height()), (192, 128));
+    settings.texture.style = Style::Enhanced;
+    let enhanced = painted(&settings);
+    for (y, x) in [(20, 30), (40, 33)] {
+        let [r, g, b, _] = enhanced.front.base_colour[(x, y)];
+        assert_eq!([r, g, b], set.front.enhancement[(128 + x, 64 + y)]);
+    }
+}
+
+#[test]
+fn the_year_is_a_sheet_with_a_table_or_a_film() {
+    let folder = fresh();
+    let small = ["--size", "64", "--set", "growth.type=none"];
+    let with = |more: &[&'static str]| {
+        [&["compare", "maple", "--by", "season"][..], &small, more].concat()
+    };
+    succeed(folder.path(), &with(&["-o", "year.png", "--csv", "year.csv"]));
+    let table = std::fs::read_to_string(folder.path().join("year.csv")).expect("a table");
+    let hues: Vec<f64> = table
+        .lines()
+        .skip(2)
+        .map(|line| line.rsplit(',').next().and_then(|hue| hue.parse().ok()).expect("a hue"))
+        .collect();
+    // From summer on the hue falls from green to brown.
+    assert!(hues.len() == 5 && hues[0] > 70.0, "{hues:?}");
+    assert!(hues.windows(2).take(2).all(|pair| pair[0] > pair[1]), "{hues:?}");
+    assert!(hues[4] < 45.0, "{hues:?}");
+    succeed(folder.path(), &with(&["-o", "film", "--frames", "3"]));
+    let names: Vec<_> = contents(&folder.path().join("film")).into_keys().collect();
+    assert_eq!(names.len(), 3);
+    succeed(folder.path(), &with(&["-o", "film.png", "--frames", "3"]));
+    let film = std::fs::read(folder.path().join("film.png")).expect("a film");
+    assert_eq!(film.windows(4).filter(|kind| kind == b"fcTL").count(), 3);
+    let message = fail(folder.path(), 2, &["compare", "maple", "--frames", "3", "-o", "x.png"]);
+    assert!(message.contains("--by season"), "{message}");
+}
+
+#[test]
+fn states_and_wounds_out_of_range_are_refused_by_name() {
+    let folder = fresh();
+    for (flags, part) in [
+        (["--season", "1.5"], "state.season"),
+        (["--health", "-1"], "state.health"),
+        (["--damage", "holes=2"], "damage.holes"),
+        (["--damage", "hole=0.1"], "damage.holes"),
+        (["--damage", "holes"], "holes"),
+    ] {
+        let flag = format!("{}={}", flags[0], flags[1]);
+        let message = fail(folder.path(), 2, &["generate", "beech", &flag]);
+        assert!(message.contains(part), "{flags:?}: {message}");
+    }
+    assert!(contents(folder.path()).is_empty());
+}

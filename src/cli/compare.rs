@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 use venation::document::Document;
 use venation::io;
+use venation::margin::shapes;
 use venation::observer::Silent;
 use venation::pipeline::{self, Grown};
 use venation::raster::montage::{self, Layout, Panel};
@@ -28,6 +29,7 @@ use cases::{By, Case};
 Examples:
   venation compare beech -o growth.png
   venation compare lilac --by scatter -o scatter.png         particles, as Rodkaew 2002, figure 9
+  venation compare beech --by shape -o shapes.png            every shape of a unilobed blade
   venation compare beech --outline scan.jpg --seed 3 -o growth.png --csv growth.csv
   venation compare oak --by seed --seeds 1-20 -o oaks.png    a contact sheet
   venation compare beech --by emergence -o emergence.png     straight, symmetric, ordered: one by one
@@ -199,6 +201,12 @@ fn panel(
     if case == Case::Seed {
         let notes = vec![format!("{:.0} mm", grown.margin.length_mm()), nodes];
         let label = format!("seed {seed}");
+        return Ok(Panel { picture: textures.front.base_colour, label, notes });
+    }
+    if let Case::Shape(index) = case {
+        let shape = shapes::all().swap_remove(index);
+        let kind = shape.kind.to_string();
+        let notes = if kind == shape.name { Vec::new() } else { vec![kind] };
         return Ok(Panel { picture: textures.front.base_colour, label, notes });
     }
     // Veins show best from below.

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use venation::document::{Document, Value};
 use venation::io::outline::{self, OutlineKind, OutlineOptions};
+use venation::margin::MarginSpec;
+use venation::margin::shapes;
 use venation::point_list;
 use venation::presets;
 use venation::seed::Seed;
@@ -78,6 +80,10 @@ pub(crate) struct LeafArgs {
     /// The y axis of the CSV points up, not down.
     #[arg(long, requires = "outline")]
     y_up: bool,
+    /// Give the blade the shape of this name instead of the preset's: `ovate-cordate-straight`,
+    /// `reniform`, … (`venation compare --by shape` shows them all).
+    #[arg(long, value_name = "NAME", conflicts_with = "outline")]
+    shape: Option<String>,
     /// Length of the blade from base to apex, in mm [default: the preset's].
     #[arg(long, value_name = "L")]
     length_mm: Option<f64>,
@@ -200,6 +206,9 @@ impl LeafArgs {
         if let Some(path) = &self.outline {
             self.import_outline(path, &mut document, context)?;
         }
+        if let Some(name) = &self.shape {
+            insert_shape(name, &mut document)?;
+        }
         if let Some(path) = &self.sources {
             let points = read_sources(path)?;
             document.insert("veins.sources_mm", Value::Points(points), "--sources");
@@ -233,6 +242,28 @@ impl LeafArgs {
         document.insert("margin.cuts_mm", Value::Lines(imported.cuts_mm), "--outline");
         Ok(())
     }
+}
+
+/// Puts the margin of a named shape into a document.
+fn insert_shape(name: &str, document: &mut Document) -> Result<(), Failure> {
+    let Some(shape) = shapes::find(name) else {
+        let names: Vec<String> = shapes::all().into_iter().map(|shape| shape.name).collect();
+        let hint = match venation::document::nearest_word(name, names.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => {
+                "they are waist-base-apex, as in ovate-cordate-straight, or botanists' names, as \
+                     in reniform"
+                    .to_owned()
+            }
+        };
+        return Err(Failure::Input(format!("--shape: there is no shape `{name}`; {hint}")));
+    };
+    let length = document.value("margin.length_mm");
+    document.insert_group("margin", &MarginSpec::default().shaped(&shape), "--shape");
+    if let Some(length) = length {
+        document.insert("margin.length_mm", length, "--shape");
+    }
+    Ok(())
 }
 
 /// One leaf of a document, its name checked for use in file names.

@@ -1,7 +1,5 @@
 //! From a document to one leaf: a value drawn for every range.
 
-use std::collections::BTreeMap;
-
 use super::value::{self, from_plain};
 use super::{Document, DocumentError, Entry, Value, parameters, records};
 use crate::margin::instances;
@@ -111,27 +109,44 @@ fn insert(tree: &mut toml::Table, key: &str, value: toml::Value) {
 
 pub(super) fn document_of(spec: &LeafSpec, seed: u64) -> Document {
     let tree = toml::Value::try_from(spec).expect("a leaf is plain data");
-    let entry = |value| Entry { value, origin: "leaf".into() };
-    let mut entries: BTreeMap<String, Entry> = parameters()
-        .iter()
-        .filter(|p| !records::is_record(&p.key))
-        .filter_map(|parameter| {
-            let value =
-                from_plain(&tree, parameter).or_else(|| value::default_of(&parameter.key))?;
-            Some((parameter.key.clone(), entry(value)))
-        })
-        .collect();
+    let mut document = Document { seed: Some(seed), ..Document::default() };
+    insert_tree(&mut document, "", &tree, "leaf");
+    // What the tree leaves out (an empty list) is given as its default.
+    for parameter in parameters().iter().filter(|p| !records::is_record(&p.key)) {
+        if !document.gives(&parameter.key)
+            && let Some(value) = value::default_of(&parameter.key)
+        {
+            document.insert(&parameter.key, value, "leaf");
+        }
+    }
+    document
+}
+
+/// Gives the keys of `group` (all, when empty) the values of a tree of plain data.
+pub(super) fn insert_tree(document: &mut Document, group: &str, tree: &toml::Value, origin: &str) {
+    let inside = |key: &str| {
+        let rest =
+            if group.is_empty() { Some(key) } else { key.strip_prefix(group)?.strip_prefix('.') };
+        rest.map(str::to_owned)
+    };
+    let plain = |parameter: &Parameter, key: String| Parameter { key, ..parameter.clone() };
+    for parameter in parameters().iter().filter(|p| !records::is_record(&p.key)) {
+        let Some(rest) = inside(&parameter.key) else { continue };
+        if let Some(value) = from_plain(tree, &plain(parameter, rest)) {
+            document.insert(&parameter.key, value, origin);
+        }
+    }
     for (list, keys) in records::lists() {
-        let items = list.split('.').try_fold(&tree, |node, part| node.get(part));
+        let Some(rest) = inside(list) else { continue };
+        document.start_list(list);
+        let items = rest.split('.').try_fold(tree, |node, part| node.get(part));
         let items = items.and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
         for (i, item) in items.iter().enumerate() {
             for (key, parameter) in &keys {
-                let plain = Parameter { key: (*key).to_owned(), ..(*parameter).clone() };
-                if let Some(value) = from_plain(item, &plain) {
-                    entries.insert(format!("{list}.{}.{key}", i + 1), entry(value));
+                if let Some(value) = from_plain(item, &plain(parameter, (*key).to_owned())) {
+                    document.insert(&format!("{list}.{}.{key}", i + 1), value, origin);
                 }
             }
         }
     }
-    Document { entries, seed: Some(seed), ..Document::default() }
 }

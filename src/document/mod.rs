@@ -107,6 +107,16 @@ impl Document {
         self.entries.insert(key.to_owned(), Entry { value, origin: origin.to_owned() });
     }
 
+    /// Sets every key of a group to the values of its settings: `insert_group("margin", &spec, …)`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such group, or the settings are not its own: the caller names it in its source.
+    pub fn insert_group<T: serde::Serialize>(&mut self, group: &str, settings: &T, origin: &str) {
+        let plain = toml::Value::try_from(settings).expect("settings are plain data");
+        draw::insert_tree(self, group, &plain, origin);
+    }
+
     /// Whether a key was given.
     #[must_use]
     pub fn gives(&self, key: &str) -> bool {
@@ -182,6 +192,12 @@ impl Document {
     pub fn to_toml(&self, comments: Comments) -> String {
         write::toml(self, comments)
     }
+}
+
+/// The word most like a misspelt one, when one is like it at all.
+#[must_use]
+pub fn nearest_word<'a>(word: &str, words: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    nearest(word, value::LIKE_A_KEY, words)
 }
 
 /// How much [`Document::to_toml`] explains.

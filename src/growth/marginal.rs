@@ -35,7 +35,8 @@ pub(super) struct Sweep {
 
 impl Sweep {
     pub(super) fn new(outline: &[DVec2]) -> Self {
-        let mut angles: Vec<f64> = outline[1..].iter().map(|p| angle(*p)).collect();
+        let mut angles: Vec<f64> =
+            outline.iter().filter(|p| **p != DVec2::ZERO).map(|p| angle(*p)).collect();
         angles.sort_by(f64::total_cmp);
         angles.dedup();
         let sectors: Vec<Sector> = (0..angles.len())
@@ -51,7 +52,15 @@ impl Sweep {
                 Sector { from: angles[i], edge }
             })
             .collect();
-        let hull = hull(&sectors);
+        let mut hull = hull(&sectors);
+        if outline[0] != DVec2::ZERO {
+            // The base of a peltate blade is not on its outline; the hull closes on itself.
+            hull.remove(0);
+            let first = hull[0];
+            while hull.last().is_some_and(|p| p.distance(first) <= 1e-9 * first.length()) {
+                hull.pop();
+            }
+        }
         let index = SegmentIndex::of_polygon(&hull);
         let area = polygon::signed_area(outline);
         let plain = (polygon::signed_area(&hull) - area).abs() <= 1e-9 * area;
@@ -86,6 +95,13 @@ impl Sweep {
         let mut whole = mature.to_outline();
         // Cuts do not move: what the margin has not passed yet is missing.
         whole.cuts.clear();
+        if !self.plain && mature.is_peltate() {
+            return Err(MarginError::Unsuited(
+                "parts of a peltate blade hide from the petiole, which marginal growth cannot follow; \
+                 set growth.type = \"isotropic\""
+                    .into(),
+            ));
+        }
         let outline = if self.plain {
             whole.scaled(DVec2::splat(s))
         } else {

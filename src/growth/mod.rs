@@ -431,6 +431,9 @@ impl GrowingBlade {
     /// lines of sight from it are well defined.
     #[must_use]
     pub fn root(&self) -> DVec2 {
+        if self.margin.is_peltate() {
+            return DVec2::ZERO;
+        }
         let outline = self.margin.outline();
         let (out, back) = (outline[1].normalize(), outline[outline.len() - 1].normalize());
         // The bisector of the corner; it points outwards where the corner is reflex.

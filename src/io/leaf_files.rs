@@ -1,5 +1,6 @@
 //! All files of a leaf: what is written, what it is called and what it says.
 
+use glam::DVec2;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -256,7 +257,7 @@ impl LeafFiles<'_> {
             height_range_mm: graph::rounded(self.textures.height_range_mm),
             thickness_range_mm: graph::rounded(self.textures.thickness_range_mm),
             petiole_pivot: uv_from_mm.place(self.textures.petiole_end),
-            base: uv_from_mm.place(self.margin.outline()[0]),
+            base: uv_from_mm.place(DVec2::ZERO),
             apex: uv_from_mm.place(self.margin.apex()),
             uv_from_mm,
             nodes: self.venation.graph().len(),

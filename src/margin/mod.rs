@@ -17,6 +17,7 @@ pub mod morph;
 mod outline;
 pub mod parametric;
 pub mod placement;
+pub mod shapes;
 pub mod silhouette;
 pub mod sketch;
 
@@ -59,6 +60,12 @@ parameters! {
         left: group(SideSpec, SideSpec::default()),
         /// How far the left side is its own: 1 as given, 0 the mirror of the right side.
         asymmetry: number(1.0, 0.0..=1.0, ""),
+        /// How far a unilobed leaf's midrib turns from base to apex, which stays on the axis; above 0
+        /// it bows to the right.
+        midrib_bend_deg: number(0.0, -120.0..=120.0, "deg"),
+        /// How far inside the blade the petiole is attached, as a share of the length of the blade: 0
+        /// on the margin, above 0 a peltate leaf; `length_mm` runs from there to the apex.
+        base_inset: number(0.0, 0.0..=0.6, "blades"),
         /// The lobes of a lobed leaf by the first and the last; used when no `margin.lobe` is given.
         lobing: group(LobingSpec, LobingSpec::default()),
         /// The lobes of a lobed leaf one by one.
@@ -86,7 +93,8 @@ parameters! {
 ///
 /// - At least 8 vertices, all finite; neighbours at least [`Margin::MIN_EDGE_MM`] apart.
 /// - Simple: no two edges touch, except neighbours at their shared vertex.
-/// - Anticlockwise; the first vertex is the base, at the origin, and is not repeated at the end.
+/// - Anticlockwise; the first vertex is the base, at the origin, and is not repeated at the end. Of a
+///   peltate leaf the base lies inside, and the first vertex below it on the −y axis.
 /// - The apex is a vertex on the +y axis.
 /// - Cuts (slits inside the blade) are finite lines of two points or more, inside the outline.
 /// - Landmarks stand in the order of their vertices, at most one at each.
@@ -153,9 +161,23 @@ pub enum MarginError {
         /// What is wrong with it and what to change.
         problem: String,
     },
-    /// The lobes make no leaf.
+    /// Settings that are each in order make no leaf together.
     #[error("{0}")]
-    Lobes(String),
+    Unsuited(String),
+    /// A lobe crosses its neighbours.
+    #[error("the outline crosses itself near ({x:.2}, {y:.2}) mm: {key} = {value} {problem}")]
+    LobeCrossing {
+        /// Where, x (mm).
+        x: f64,
+        /// Where, y (mm).
+        y: f64,
+        /// The key to change.
+        key: String,
+        /// Its value.
+        value: f64,
+        /// Its bound.
+        problem: String,
+    },
     /// A picture holds no usable outline.
     #[error("{0}")]
     Picture(String),
@@ -206,8 +228,13 @@ impl Margin {
             return Err(MarginError::NotFinite { index });
         }
         let tip = outline.points.get(outline.apex).copied().unwrap_or(DVec2::ZERO);
-        let at_base = outline.points.first().is_some_and(|p| p.length() < 1e-9);
-        if !at_base || tip.x.abs() > 1e-9 * tip.y.abs().max(1.0) || tip.y <= 0.0 {
+        let first = outline.points.first().copied().unwrap_or(DVec2::INFINITY);
+        let at_base = first.length() < 1e-9;
+        let below = first.x.abs() < 1e-9 && first.y < 0.0;
+        if !(at_base || below && polygon::contains(&outline.points, DVec2::ZERO))
+            || tip.x.abs() > 1e-9 * tip.y.abs().max(1.0)
+            || tip.y <= 0.0
+        {
             return Err(MarginError::NotPlaced);
         }
         outline = outline.spaced();
@@ -224,7 +251,7 @@ impl Margin {
         outline.wound(area);
         let Outline { mut points, apex, cuts, mut landmarks } = outline;
         landmarks.sort_by_key(|mark| mark.vertex);
-        points[0] = DVec2::ZERO;
+        points[0] = if at_base { DVec2::ZERO } else { DVec2::new(0.0, first.y) };
         points[apex].x = 0.0;
         if let Some(at) = polygon::self_crossing(&points) {
             return Err(MarginError::SelfCrossing { x: at.x, y: at.y, hint });
@@ -247,6 +274,12 @@ impl Margin {
     #[must_use]
     pub fn apex(&self) -> DVec2 {
         self.outline[self.apex]
+    }
+
+    /// Whether the petiole is attached inside the blade, and not on the margin.
+    #[must_use]
+    pub fn is_peltate(&self) -> bool {
+        self.outline[0] != DVec2::ZERO
     }
 
     /// Index of the apex in the outline. Vertices before it are the right side, after it the left.
@@ -340,7 +373,11 @@ pub fn build(spec: &MarginSpec, seed: Seed) -> Result<Margin, MarginError> {
 /// As [`build`].
 pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
     match spec.kind {
-        MarginKind::Unilobed => parametric::unilobed(spec),
+        MarginKind::Unilobed => {
+            let outline = parametric::outline(spec)?.peltate(spec.base_inset);
+            let hint = "lower tension, or narrow tail_x or shoulder_x";
+            Margin::from_outline(outline.scaled(DVec2::splat(spec.length_mm)), hint)
+        }
         MarginKind::Lobed => {
             let expanded;
             let records = if spec.lobe.is_empty() {
@@ -349,8 +386,16 @@ pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
             } else {
                 &spec.lobe
             };
-            let outline = lobes::outline(records)?.scaled(DVec2::splat(spec.length_mm));
-            Margin::from_outline(outline, "make the lobes there narrower or shorter")
+            let outline = lobes::outline(records)?.peltate(spec.base_inset);
+            let hint = "make the lobes there narrower or shorter";
+            let scale = DVec2::splat(spec.length_mm);
+            Margin::from_outline(outline.clone().scaled(scale), hint).map_err(|error| match error {
+                MarginError::SelfCrossing { x, y, .. } => {
+                    let at = DVec2::new(x, y) / spec.length_mm;
+                    lobes::mending::advice(spec, records, &outline, at).unwrap_or(error)
+                }
+                error => error,
+            })
         }
         MarginKind::Polygon => {
             let spec = spec.at_length();

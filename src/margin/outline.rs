@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Margin;
-use super::landmarks::Landmark;
+use super::landmarks::{Landmark, LandmarkKind};
 use crate::geometry::polygon;
 
 /// An outline of which nothing is guaranteed yet.
@@ -55,6 +55,31 @@ impl Outline {
             *line = cut.chain(line.last().copied()).map(&place).collect();
         }
         self
+    }
+
+    /// The same with the base moved up into the blade by a share of its length, and brought back to the
+    /// length from there to the apex: a peltate leaf. Nothing changes at 0. For outlines of length 1.
+    #[must_use]
+    pub fn peltate(self, share: f64) -> Self {
+        if share == 0.0 {
+            return self;
+        }
+        let raised = |p: DVec2| (p - DVec2::new(0.0, share)) / (1.0 - share);
+        let cuts = self.cuts.into_iter().map(|line| line.into_iter().map(raised).collect());
+        let landmarks = self.landmarks.into_iter().map(|mark| match mark.kind {
+            // Veins come from the petiole now, or from where they left the midrib above it.
+            LandmarkKind::LobeTip { origin } => {
+                let origin = raised(origin).max(DVec2::ZERO);
+                Landmark { kind: LandmarkKind::LobeTip { origin }, ..mark }
+            }
+            _ => mark,
+        });
+        Self {
+            points: self.points.into_iter().map(raised).collect(),
+            apex: self.apex,
+            cuts: cuts.collect(),
+            landmarks: landmarks.collect(),
+        }
     }
 
     /// Anticlockwise, whatever it was; `area` is its signed area.
@@ -136,7 +161,6 @@ impl Outline {
 
 #[cfg(test)]
 mod tests {
-    use super::super::landmarks::LandmarkKind;
     use super::*;
 
     fn marked(vertex: usize, order: u8) -> Landmark {

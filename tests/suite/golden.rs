@@ -303,6 +303,15 @@ fn golden_atlas() {
 }
 
 #[test]
+fn golden_shapes_by_name() {
+    // Garg 2011, tables 4.2 and 4.3.
+    let folder = crate::support::fresh();
+    let arguments = ["compare", "beech", "--by", "shape", "--size", "160", "-o", "s.png"];
+    crate::support::succeed(folder.path(), &arguments);
+    compare("readme_shapes", &read(&folder.path().join("s.png")).expect("the sheet"));
+}
+
+#[test]
 fn every_picture_of_the_readme_is_here() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let readme = std::fs::read_to_string(root.join("README.md")).expect("the README");

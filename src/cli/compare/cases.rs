@@ -2,7 +2,7 @@
 
 use venation::error::Error;
 use venation::growth::{GrowthType, RatePattern};
-use venation::margin;
+use venation::margin::{self, shapes};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
@@ -20,6 +20,8 @@ pub(super) enum By {
     Algorithm,
     /// Nothing but the seed: a contact sheet of what a preset makes.
     Seed,
+    /// Shapes of unilobed blades: the fifty types and twelve names (Garg 2011, tables 4.2 and 4.3).
+    Shape,
     /// One leaf from spring to litter: front, back and against the light; `--frames N` for a film.
     Season,
     /// What makes veins straight, symmetric and ordered where growth alone makes them.
@@ -45,6 +47,8 @@ pub(super) enum Case {
     Algorithm(Algorithm),
     /// The leaf as it is.
     Seed,
+    /// By its place among all shapes.
+    Shape(usize),
     Emergence(Emergence),
 }
 
@@ -109,6 +113,9 @@ const SPACING: f64 = 0.3;
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.
 const SCATTERS: [(u64, u64); 4] = [(3, 1378), (5, 500), (7, 254), (10, 125)];
 
+/// Sixty leaves on one sheet are shown no larger than this (pixels).
+const SHAPE_PX: u64 = 256;
+
 /// The area of the paper's ivy (pixels²): its counts times its spacings².
 const IVY_PX2: f64 = 12_450.0;
 
@@ -124,6 +131,7 @@ impl By {
             Self::Scatter => "scatter",
             Self::Algorithm => "algorithm",
             Self::Seed => "leaf",
+            Self::Shape => "shape",
             Self::Season => "season",
             Self::Emergence => "emergence",
         }
@@ -135,6 +143,7 @@ impl By {
             Self::Scatter => "particles by scatter pattern and spacing",
             Self::Algorithm => "vein algorithms",
             Self::Seed => "seeds",
+            Self::Shape => "shapes of unilobed blades: waist-base-apex, and botanists' names",
             Self::Season => "season",
             Self::Emergence => "veins from growth alone",
         }
@@ -149,6 +158,7 @@ impl By {
                 .collect(),
             Self::Algorithm => Algorithm::ALL.iter().map(|&a| Case::Algorithm(a)).collect(),
             Self::Seed => vec![Case::Seed],
+            Self::Shape => (0..shapes::all().len()).map(Case::Shape).collect(),
             // The year has a sheet of its own: the leaf grows once.
             Self::Season => Vec::new(),
             Self::Emergence => Emergence::ALL.map(Case::Emergence).to_vec(),
@@ -161,6 +171,8 @@ impl By {
             Self::Scatter => Pattern::ALL.len(),
             Self::Seed => 0,
             Self::Growth | Self::Algorithm | Self::Season | Self::Emergence => self.cases().len(),
+            // The types of one waist fill two rows.
+            Self::Shape => 8,
         }
     }
 }
@@ -172,6 +184,7 @@ impl Case {
             Self::Scatter(pattern, px) => format!("{pattern} {px} px"),
             Self::Algorithm(algorithm) => algorithm.to_string(),
             Self::Seed => "leaf".to_owned(),
+            Self::Shape(index) => shapes::all().swap_remove(index).name,
             Self::Emergence(emergence) => emergence.word().to_owned(),
         }
     }
@@ -182,6 +195,10 @@ impl Case {
             Self::Growth(growth) => spec.growth.r#type = growth,
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
             Self::Seed => {}
+            Self::Shape(index) => {
+                spec.margin = spec.margin.shaped(&shapes::all()[index]);
+                spec.texture.size_px = spec.texture.size_px.min(SHAPE_PX);
+            }
             Self::Emergence(emergence) => emergence.apply(spec)?,
             Self::Scatter(pattern, px) => {
                 // The paper's pixel: that in which this blade is as large as its ivy.

@@ -14,11 +14,12 @@
 //! - The margin starts at the base (0, 0) also when the first lobe's vein leaves higher up.
 //! - Neighbours that do not meet are joined by a strip of blade along the midrib, where the thesis
 //!   has them touch on it: see [`STRIP`].
-//! - Basal lobes that would overlap are cut back to a slit along the axis, as in [`super::curve`].
+//! - Basal lobes that would overlap are cut back to a slit along the axis, (see [`SLIT`]).
 //!
 //! Coordinates are relative to the primary vein (length 1), those inside a lobe to the lobe's vein.
 
 mod meeting;
+pub(super) mod mending;
 mod place;
 pub mod shorthand;
 
@@ -126,16 +127,20 @@ pub const STRIP: f64 = 0.08;
 /// The margin through the tangent at a valley made by [`STRIP`] (degrees).
 const STRIP_ANGLE_DEG: f64 = 60.0;
 
+/// Basal lobes that overlap are cut back to this distance from the axis: they lie edge to edge, a slit
+/// of twice this between them, which a texel of a blade 500 texels long just shows.
+pub const SLIT: f64 = 0.002;
+
 /// The outline of a leaf of these lobes, relative to the primary vein (length 1): base at (0, 0),
 /// apex at (0, 1), lobe tips and valleys as landmarks.
 ///
 /// # Errors
 ///
-/// [`MarginError::Lobes`] when the list makes no leaf: none at all, two at the apex, or one side bare
+/// [`MarginError::Unsuited`] when the list makes no leaf: none at all, two at the apex, or one side bare
 /// with no lobe at the apex. That the outline does not cross itself is for
 /// [`Margin`](super::Margin) to check.
 pub fn outline(records: &[LobeRecord]) -> Result<Outline, MarginError> {
-    let wrong = |problem: &str| Err(MarginError::Lobes(problem.to_owned()));
+    let wrong = |problem: &str| Err(MarginError::Unsuited(problem.to_owned()));
     let mut at_apex = records.iter().filter(|record| record.side == LobeSide::Apex);
     let apex = at_apex.next();
     if at_apex.next().is_some() {
@@ -191,7 +196,7 @@ fn mirror(outline: &mut Outline, other: Option<Outline>) {
 
 /// Adds the right side from the base to the apex; `apex` is the lobe there and its half.
 fn flank(outline: &mut Outline, lobes: &[Lobe], apex: Option<(&Lobe, Half)>) {
-    let mut upward = Vec::new();
+    let mut upward = Vec::with_capacity(3);
     let mut start = lobes
         .first()
         .map(|lobe| (lobe, lobe.lower))
@@ -203,6 +208,7 @@ fn flank(outline: &mut Outline, lobes: &[Lobe], apex: Option<(&Lobe, Half)>) {
             upward.clear();
             lobe.waypoints(&mut upward, lobe.lower, start);
             curve::append(&mut outline.points, &upward, lobe.tension);
+            cut_back(&mut outline.points);
         }
         let vertex = outline.points.len() - 1;
         let kind = LandmarkKind::LobeTip { origin: lobe.origin };
@@ -233,6 +239,21 @@ fn flank(outline: &mut Outline, lobes: &[Lobe], apex: Option<(&Lobe, Half)>) {
         lobe.waypoints(&mut upward, half, start);
         curve::append(&mut outline.points, &upward, lobe.tension);
     }
+}
+
+/// Cuts the lowest lobe back where it would reach over the axis below the base. `points` runs from the
+/// base to the tip of that lobe.
+fn cut_back(points: &mut Vec<DVec2>) {
+    let over = |p: &DVec2| p.x < SLIT && p.y < 0.0;
+    let last = points.len() - 1;
+    let Some(end) = points[1..last].iter().rposition(over).map(|i| i + 1) else { return };
+    // Beside the base itself the margin may run close to the axis.
+    if !points[1..=end].iter().any(|p| p.x < 0.0) {
+        return;
+    }
+    let (a, b) = (points[end], points[end + 1]);
+    let exit = a.lerp(b, (SLIT - a.x) / (b.x - a.x));
+    points.splice(1..=end, [DVec2::new(SLIT, exit.y)]);
 }
 
 #[cfg(test)]

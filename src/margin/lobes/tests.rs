@@ -259,3 +259,43 @@ fn random_lobes_are_margins_or_are_refused_with_a_place() {
     }
     assert!(made > 150, "{made}");
 }
+
+#[test]
+fn basal_lobes_that_overlap_are_cut_back_to_a_slit() {
+    let wide = HalfLobe { waist_x: 0.5, base_angle_deg: 80.0, ..HalfLobe::default() };
+    let lowest = LobeRecord { angle_deg: 150.0, length: 0.5, lower: wide, ..LobeRecord::default() };
+    let mut lobe = vec![lowest];
+    lobe.extend(palmate(5).records().unwrap().split_off(1));
+    let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
+    let margin = entire(&spec).unwrap();
+    assert_eq!(margin.check(), None);
+    let outline = margin.outline();
+    assert!((outline[1].x - SLIT * 80.0).abs() < 1e-9 && outline[1].y < 0.0, "{}", outline[1]);
+    let last = outline[outline.len() - 1];
+    assert!(last.distance(DVec2::new(-outline[1].x, outline[1].y)) < 1e-9);
+}
+
+#[test]
+fn lobes_that_cross_name_the_key_the_value_and_a_bound_that_works() {
+    let slim = HalfLobe { waist_x: 0.14, ..HalfLobe::default() };
+    let lobing = LobingSpec {
+        lower: slim.clone(),
+        upper: slim,
+        valley: ValleyKind::Set,
+        valley_distance: 0.4,
+        valley_angle_deg: 20.0,
+        ..pinnate(9)
+    };
+    let mut lobe = lobing.records().unwrap();
+    lobe[1].lower.waist_x = 1.1;
+    let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
+    let error = entire(&spec).unwrap_err();
+    let MarginError::LobeCrossing { key, value, problem, .. } = &error else { panic!("{error}") };
+    assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 1.1));
+    let words = problem.split("take ").nth(1).unwrap();
+    let bound: f64 = words.split(' ').next().unwrap().parse().unwrap();
+    let mut mended = spec;
+    mended.lobe[1].upper.waist_x *= bound / value;
+    mended.lobe[1].lower.waist_x = bound;
+    assert_eq!(entire(&mended).unwrap().check(), None);
+}

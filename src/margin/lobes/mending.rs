@@ -1,0 +1,91 @@
+//! What to change about lobes that cross: the key, its value and how far it may go.
+
+use glam::DVec2;
+
+use super::{LobeRecord, LobeSide, outline};
+use crate::margin::{LandmarkKind, Margin, MarginError, MarginSpec, Outline};
+
+/// Bisections for a bound: it is printed with three digits.
+const HALVINGS: usize = 12;
+
+/// The narrowest a lobe is made on the way to a bound, as a share of what it is.
+const NARROWEST: f64 = 0.02;
+
+/// For an outline that crosses itself near `at` (relative): the waist of the lobe there, and the widest
+/// it may be with everything else as it is; `None` when no width of that lobe helps.
+pub(in crate::margin) fn advice(
+    spec: &MarginSpec,
+    records: &[LobeRecord],
+    crossing: &Outline,
+    at: DVec2,
+) -> Option<MarginError> {
+    let nearest = (0..crossing.points.len()).min_by(|&i, &j| {
+        let off = |i: usize| crossing.points[i].distance_squared(at);
+        off(i).total_cmp(&off(j))
+    })?;
+    // The tip between the valleys around that vertex.
+    let tip = crossing
+        .landmarks
+        .iter()
+        .filter(|mark| matches!(mark.kind, LandmarkKind::LobeTip { .. }))
+        .min_by_key(|mark| mark.vertex.abs_diff(nearest))?;
+    let index = record_of(records, crossing.points[tip.vertex], spec.base_inset)?;
+    let listed = !spec.lobe.is_empty();
+    let record = &records[index];
+    let upper = record.upper.waist_x >= record.lower.waist_x;
+    let value = if upper { record.upper.waist_x } else { record.lower.waist_x };
+    let works = |share: f64| {
+        let mut narrower = records.to_vec();
+        for (i, lobe) in narrower.iter_mut().enumerate() {
+            // In the shorthand all lobes have one shape.
+            if i == index || !listed {
+                lobe.lower.waist_x *= share;
+                lobe.upper.waist_x *= share;
+            }
+        }
+        let scale = DVec2::splat(spec.length_mm);
+        outline(&narrower)
+            .and_then(|o| Margin::from_outline(o.peltate(spec.base_inset).scaled(scale), ""))
+            .is_ok()
+    };
+    if !works(NARROWEST) {
+        return None;
+    }
+    let (mut low, mut high) = (NARROWEST, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        if works(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let half = if upper { "upper" } else { "lower" };
+    let group = if listed { format!("margin.lobe.{}", index + 1) } else { "margin.lobing".into() };
+    // Rounded down, so that the bound itself works.
+    let most = (value * low * 1e3).floor() / 1e3;
+    Some(MarginError::LobeCrossing {
+        x: at.x * spec.length_mm,
+        y: at.y * spec.length_mm,
+        key: format!("{group}.{half}.waist_x"),
+        value,
+        problem: format!(
+            "is too wide beside its neighbours; take {most} or less, with the other half in proportion"
+        ),
+    })
+}
+
+/// The record whose lobe has its tip there.
+fn record_of(records: &[LobeRecord], tip: DVec2, inset: f64) -> Option<usize> {
+    let at = tip * (1.0 - inset) + DVec2::new(0.0, inset);
+    let folded = DVec2::new(at.x.abs(), at.y);
+    let off = |record: &LobeRecord| {
+        let on = match record.side {
+            LobeSide::Right => at.x >= 0.0,
+            LobeSide::Left => at.x <= 0.0,
+            LobeSide::Both | LobeSide::Apex => true,
+        };
+        if on { super::Lobe::new(record).tip().distance(folded) } else { f64::INFINITY }
+    };
+    (0..records.len()).min_by(|&i, &j| off(&records[i]).total_cmp(&off(&records[j])))
+}

@@ -105,6 +105,8 @@ fn is_sound(
             let apart = pair.iter().all(|&node| node != c && node != d);
             apart && segments_touch(p, q, at(c), at(d))
         };
-        p != q && !lines.touches(p, q) && !home.any_near(p.min(q) - reach, p.max(q) + reach, touches)
+        p != q
+            && !lines.touches(p, q)
+            && !home.any_near(p.min(q) - reach, p.max(q) + reach, touches)
     })
 }

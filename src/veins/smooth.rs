@@ -55,7 +55,13 @@ pub fn smoothed(
     let mut stiff = vec![false; graph.len()];
     loop {
         let positions = low_pass(&graph, &heirs, &blade, &stiff, spec);
-        let shape = Shape { positions: &positions, heirs: &heirs, stiff: &stiff, pieces: &pieces, blade: &blade };
+        let shape = Shape {
+            positions: &positions,
+            heirs: &heirs,
+            stiff: &stiff,
+            pieces: &pieces,
+            blade: &blade,
+        };
         let (finer, renumbered) = subdivided(&graph, shape, longest);
         if !stiffen(&mut stiff, &graph, &finer, &renumbered) {
             let count =

@@ -224,12 +224,7 @@ impl Stars {
             if own.contains(&c) || own.contains(&d) {
                 return false;
             }
-            segments_touch(
-                place,
-                end,
-                self.positions[c as usize],
-                self.positions[d as usize],
-            )
+            segments_touch(place, end, self.positions[c as usize], self.positions[d as usize])
         };
         !self.edges.any_near(place.min(end), place.max(end), touches)
     }
@@ -250,7 +245,10 @@ impl Stars {
             self.radii.push(self.radii[i]);
             self.parents[i] = Some(added);
             self.children[added as usize].push(node);
-            self.children[parent as usize].iter_mut().filter(|c| **c == node).for_each(|c| *c = added);
+            self.children[parent as usize]
+                .iter_mut()
+                .filter(|c| **c == node)
+                .for_each(|c| *c = added);
         } else {
             self.parents.push(Some(node));
             let rank = |spoke: &Spoke| match spoke.end {
@@ -273,8 +271,7 @@ impl Stars {
                 End::Join(join) => {
                     self.joins_at[i].retain(|&other| other != join);
                     let (c, d) = self.joins[join as usize];
-                    self.joins[join as usize] =
-                        if c == node { (added, d) } else { (c, added) };
+                    self.joins[join as usize] = if c == node { (added, d) } else { (c, added) };
                     self.joins_at[added as usize].push(join);
                 }
             }

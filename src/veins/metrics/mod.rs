@@ -13,6 +13,7 @@
 
 pub mod areoles;
 pub mod bins;
+pub mod courses;
 pub mod distances;
 pub mod hull;
 pub mod junctions;
@@ -32,4 +33,4 @@ pub mod topology;
 pub use measures::Measures;
 pub use network::{Network, Segment};
 pub use pattern::{APEX_REACH, VeinMetrics};
-pub use rows::{Measure, Row};
+pub use rows::{Architecture, Measure, Row};

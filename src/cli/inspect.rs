@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use venation::io::network::{self, ReadNetwork};
 use venation::veins::metrics::measures::{Measures, Unit};
-use venation::veins::metrics::{Measure, picture};
+use venation::veins::metrics::{Architecture, Measure, picture};
 
 use super::{Context, Failure};
 
@@ -18,7 +18,8 @@ Examples:
   venation inspect cleared-leaf.png --px-per-mm 252   the same with lengths in mm
 
 The twenty rows come first: measures free of scale, each with the band that real leaves lie in. A row \
-counts when all its values are inside. Pictures need veins 6 px wide or more for rows 16 to 19.")]
+counts when all its values are inside. \
+Open forking veins (ginkgo) and parallel ones (grass) have eight rows of their own. Pictures need veins 6 px wide or more for rows 16 to 19.")]
 pub(crate) struct Args {
     /// A leaf's folder, its NAME_veins.json, or a black-and-white picture (PNG, JPEG) of veins.
     path: PathBuf,
@@ -31,6 +32,16 @@ pub(crate) struct Args {
     /// Scale of a picture: lengths are in mm then.
     #[arg(long, value_name = "N")]
     px_per_mm: Option<f64>,
+    /// The rows that count: `reticulate`, `dichotomous` or `parallel`. By itself: what the veins look like.
+    #[arg(long, value_name = "KIND", value_parser = architecture)]
+    architecture: Option<Architecture>,
+}
+
+fn architecture(word: &str) -> Result<Architecture, String> {
+    Architecture::ALL.iter().copied().find(|kind| kind.word() == word).ok_or_else(|| {
+        let words: Vec<&str> = Architecture::ALL.iter().map(|kind| kind.word()).collect();
+        format!("is not one of {}", words.join(", "))
+    })
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -41,7 +52,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let read = network::read(&args.path, args.px_per_mm)
         .map_err(|error| Failure::Input(error.to_string()))?;
     read.notes.iter().for_each(|note| context.say(note));
-    let measures = Measures::of(&read.network, read.unit);
+    let measures = Measures::by(&read.network, read.unit, args.architecture);
     let coarse = |pixel: f64| measures.median_width < Some(picture::FINEST_WIDTH_PX * pixel);
     if read.pixel.is_some_and(coarse) {
         context.say("veins are less than 6 px wide: do not trust rows 16 to 19");
@@ -119,7 +130,8 @@ fn table(read: &ReadNetwork, m: &Measures) -> String {
             line(&mut text, &row.number.to_string(), measure);
         }
     }
-    text += &format!("{} of {} rows inside\n\n", m.rows_inside(), m.rows.len());
+    let kind = m.architecture.word();
+    text += &format!("{} of {} rows inside ({kind})\n\n", m.rows_inside(), m.rows.len());
     m.others.iter().for_each(|measure| line(&mut text, "", measure));
     if !m.orders.is_empty() {
         text += &format!("\norder  segments  length {unit}  {unit}/{unit}²  width {unit}\n");
@@ -244,6 +256,7 @@ fn document(read: &ReadNetwork, m: &Measures) -> Value {
         "length": m.length,
         "blade_area": m.blade_area,
         "median_width": m.median_width,
+        "architecture": m.architecture.word(),
         "rows_inside": m.rows_inside(),
         "rows": rows.collect::<Vec<_>>(),
         "others": m.others.iter().map(measure).collect::<Vec<_>>(),

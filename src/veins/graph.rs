@@ -23,6 +23,8 @@ words! {
         Marginal = "marginal",
         /// Outside the secondaries: small arches between them, and branches to the teeth.
         Exterior = "exterior",
+        /// Between secondaries, laid down as they were.
+        Tertiary = "tertiary",
         /// Every finer vein.
         Minor = "minor",
     }

@@ -26,6 +26,7 @@ mod primary;
 mod rim;
 mod secondary;
 mod targets;
+mod tertiary;
 #[cfg(test)]
 mod tests;
 
@@ -80,6 +81,22 @@ words! {
         Brochidodromous = "brochidodromous",
         /// The same, with more arches outside.
         FestoonedBrochidodromous = "festooned-brochidodromous",
+    }
+}
+
+words! {
+    /// How the tertiary veins run between the secondaries.
+    pub enum TertiaryType {
+        /// None are laid: they grow.
+        None = "none",
+        /// From one secondary to the next, like the rungs of a ladder.
+        Percurrent = "percurrent",
+        /// The same with a step half-way.
+        PercurrentAlternate = "percurrent-alternate",
+        /// Leaning and bending, so that they meet each other.
+        Reticulate = "reticulate",
+        /// They fork and end between the secondaries.
+        Ramified = "ramified",
     }
 }
 
@@ -142,6 +159,10 @@ parameters! {
         intersecondary_count: number(0.0, 0.0..=3.0, ""),
         /// How long they are, as a share of the way to the margin.
         intersecondary_length: number(0.45, 0.1..=0.95, ""),
+        /// How the tertiary veins run.
+        tertiary: choice(TertiaryType, TertiaryType::None),
+        /// From one tertiary vein to the next along a secondary.
+        tertiary_spacing: number(0.035, 0.005..=0.5, "lengths"),
         /// A vein along the margin.
         rim: choice(RimType, RimType::None),
         /// How far an intramarginal vein lies inside the margin.
@@ -152,6 +173,7 @@ parameters! {
 const PRIMARY: Rank = Rank { order: 1, kind: VeinKind::Primary };
 const SECONDARY: Rank = Rank { order: 2, kind: VeinKind::Secondary };
 const INTERSECONDARY: Rank = Rank { order: 2, kind: VeinKind::Intersecondary };
+const TERTIARY: Rank = Rank { order: 3, kind: VeinKind::Tertiary };
 const EXTERIOR: Rank = Rank { order: 3, kind: VeinKind::Exterior };
 
 /// Guides end this far inside the margin, in steps; at most [`INSET`] lengths.
@@ -205,6 +227,7 @@ pub(super) fn check(spec: &GuideSpec) -> Result<(), VeinError> {
         ("tooth_reach", spec.tooth_reach),
         ("intersecondary_count", spec.intersecondary_count),
         ("intersecondary_length", spec.intersecondary_length),
+        ("tertiary_spacing", spec.tertiary_spacing),
         ("rim_inset", spec.rim_inset),
     ];
     for parameter in GuideSpec::parameters() {

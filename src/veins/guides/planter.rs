@@ -123,6 +123,25 @@ impl<'a> Planter<'a> {
         Some(Vein { nodes, line: points[..free].to_vec(), hit })
     }
 
+    /// Where a straight vein out of a node would meet another vein, within a distance; `None` where it
+    /// would come to the margin or nowhere.
+    pub(super) fn probe(&self, from: NodeId, towards: DVec2, longest: f64) -> Option<DVec2> {
+        let start = self.graph.positions()[from as usize];
+        let pieces = (longest / self.step) as usize;
+        let mut last = start;
+        for i in 1..=pieces {
+            let next = start + towards * (i as f64 * self.step);
+            if !next.is_finite() || !self.ground.is_free(last, next) {
+                return None;
+            }
+            if let Some(hit) = self.in_the_way(last, next, from, start) {
+                return (i > 2).then(|| self.graph.positions()[hit as usize]);
+            }
+            last = next;
+        }
+        None
+    }
+
     /// A node of another vein that the piece a–b would touch or come too close to.
     fn in_the_way(&self, a: DVec2, b: DVec2, from: NodeId, start: DVec2) -> Option<NodeId> {
         let positions = self.graph.positions();

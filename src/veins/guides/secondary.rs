@@ -10,6 +10,7 @@ use super::planter::{Planter, Vein};
 use super::primary::{Lateral, Primaries};
 use super::rim::Rim;
 use super::targets::{self, Tip};
+use super::tertiary::{self, Bearer};
 use super::{GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
 use crate::seed::Rng;
 
@@ -65,6 +66,7 @@ pub(super) fn lay(
 ) {
     let Some(midrib) = &primaries.midrib else { return };
     let mut rim = Rim::new(spec, planter);
+    let mut bearers = Vec::new();
     if spec.secondary != SecondaryType::None {
         let ground = planter.ground;
         let first = spec.first_at.max(primaries.secondaries_from).min(spec.last_at - 1e-3);
@@ -82,7 +84,7 @@ pub(super) fn lay(
         } else {
             Vec::new()
         };
-        let mut row = Row { spec, teeth, taken: Vec::new(), rim: &mut rim };
+        let mut row = Row { spec, teeth, taken: Vec::new(), bearers: Vec::new(), rim: &mut rim };
         row.both_sides(planter, midrib, count, (first, spec.last_at), rng);
         let palmate =
             matches!(spec.primary, PrimaryType::Actinodromous | PrimaryType::Palinactinodromous);
@@ -91,8 +93,10 @@ pub(super) fn lay(
                 row.lateral(planter, lateral, between, rng);
             }
         }
+        bearers = row.bearers;
     }
     rim.lay(planter, primaries);
+    tertiary::lay(spec, planter, &bearers, rng);
 }
 
 /// Secondaries along one primary after the other.
@@ -101,6 +105,8 @@ struct Row<'a> {
     teeth: Vec<Tip>,
     /// Teeth that have a vein.
     taken: Vec<DVec2>,
+    /// What tertiaries leave from.
+    bearers: Vec<Bearer>,
     rim: &'a mut Rim,
 }
 
@@ -263,6 +269,7 @@ impl Row<'_> {
             _ => LEAST * curve::length(&full) / curve::length(&line),
         };
         let vein = self.attach(planter, parent, share, plan, &line, least)?;
+        self.bearers.push(Bearer { vein: vein.clone(), ahead: parent.at(share).2 });
         if vein.hit.is_some() && crosses {
             planter.join_hit(&vein);
         }

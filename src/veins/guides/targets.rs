@@ -135,6 +135,10 @@ fn tips_at(margin: &Margin, sigma: f64) -> Vec<Tip> {
 
 /// The tips of the lobes of a margin, without the apex, on each side from apex to base.
 pub(super) fn lobes(margin: &Margin) -> Vec<Tip> {
+    let known = known_lobes(margin);
+    if !known.is_empty() {
+        return known;
+    }
     let line = polygon::resampled(margin.outline(), 0.005 * margin.length_mm());
     let reach: Vec<f64> = evened(&line, 1.5).iter().map(|p| p.length()).collect();
     let places = Places::new(margin, &line);
@@ -146,6 +150,67 @@ pub(super) fn lobes(margin: &Margin) -> Vec<Tip> {
         .collect();
     lobes.sort_by(|a, b| (b.side, b.along).partial_cmp(&(a.side, a.along)).expect("finite"));
     lobes
+}
+
+/// The teeth that the maker of a margin put there, from base to apex on each side.
+fn known_teeth(margin: &Margin) -> Vec<Tip> {
+    let outline = margin.outline();
+    let marks = margin.landmarks();
+    let mut tips = Vec::new();
+    for (i, mark) in marks.iter().enumerate() {
+        let LandmarkKind::Tooth { order } = mark.kind else { continue };
+        // How far it stands out of the line between the low places beside it.
+        let low = |mark: &&Landmark| {
+            matches!(mark.kind, LandmarkKind::Sinus { .. } | LandmarkKind::Valley)
+        };
+        let before = marks[..i].iter().rev().find(low);
+        let after = marks[i + 1..].iter().find(low);
+        let at = outline[mark.vertex];
+        let height = before.zip(after).map(|(a, b)| {
+            let [a, b] = [a.vertex, b.vertex].map(|vertex| outline[vertex]);
+            at.distance(polygon::nearest_on_segment(a, b, at))
+        });
+        // One at the end of a side has a low place on one side only.
+        let height = height.unwrap_or(0.01 * margin.length_mm() / f64::from(order.max(1)));
+        tips.push(tip_at(margin, mark.vertex, height));
+    }
+    tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));
+    tips
+}
+
+/// The same for lobes, without the one at the apex, from apex to base.
+fn known_lobes(margin: &Margin) -> Vec<Tip> {
+    let near_apex = 0.02 * margin.length_mm();
+    let mut tips: Vec<Tip> = margin
+        .landmarks()
+        .iter()
+        .filter(|mark| matches!(mark.kind, LandmarkKind::LobeTip { .. }))
+        .filter(|mark| margin.outline()[mark.vertex].distance(margin.apex()) > near_apex)
+        .map(|mark| tip_at(margin, mark.vertex, LOBE * margin.length_mm()))
+        .collect();
+    tips.sort_by(|a, b| (b.side, b.along).partial_cmp(&(a.side, a.along)).expect("finite"));
+    tips
+}
+
+/// A tip at a vertex of the outline.
+fn tip_at(margin: &Margin, vertex: usize, height: f64) -> Tip {
+    let outline = margin.outline();
+    let apex = outline.iter().position(|&p| p == margin.apex()).unwrap_or(0);
+    let way = |range: std::ops::RangeInclusive<usize>| {
+        let count = outline.len();
+        range
+            .clone()
+            .zip(range.skip(1))
+            .map(|(i, j)| outline[i % count].distance(outline[j % count]))
+            .sum::<f64>()
+    };
+    let (along, side) = if vertex <= apex {
+        (way(0..=vertex) / way(0..=apex).max(f64::MIN_POSITIVE), 1.0)
+    } else {
+        let end = outline.len();
+        (way(vertex..=end) / way(apex..=end).max(f64::MIN_POSITIVE), -1.0)
+    };
+    Tip { at: outline[vertex], along, height, side }
 }
 
 /// Peaks of a closed row of numbers that rise by `least` or more over the passes to higher ones, and

@@ -4,11 +4,12 @@ use std::ops::RangeInclusive;
 
 use super::areoles::{Areole, Areoles};
 use super::bins::{AngleBin, ExponentBin, angle_bins, exponent_bins};
+use super::courses::Courses;
 use super::distances::Distances;
 use super::junctions::{Junction, balanced_exponent, junctions};
 use super::nesting::Nesting;
 use super::network::Network;
-use super::rows::{Measure, Row, rows};
+use super::rows::{Architecture, Measure, Row, rows};
 use super::statistics::{deviation, mean, median, quantile, share, variation};
 use super::strahler::{StrahlerOrder, strahler};
 use super::topology::Topology;
@@ -50,7 +51,9 @@ pub struct Measures {
     pub distance_pixel: Option<f64>,
     /// Median width of the segments.
     pub median_width: Option<f64>,
-    /// The twenty rows that count.
+    /// What kind of network it is, by which rows it is measured.
+    pub architecture: Architecture,
+    /// The rows that count: twenty for a netted leaf.
     pub rows: Vec<Row>,
     /// What else is known of real leaves, and what informs.
     pub others: Vec<Measure>,
@@ -80,9 +83,15 @@ pub struct OrderShare {
 }
 
 impl Measures {
-    /// Measures a network.
+    /// Measures a network, by the rows of what it looks like.
     #[must_use]
     pub fn of(network: &Network, unit: Unit) -> Self {
+        Self::by(network, unit, None)
+    }
+
+    /// Measures a network by the rows of an architecture.
+    #[must_use]
+    pub fn by(network: &Network, unit: Unit, architecture: Option<Architecture>) -> Self {
         let topology = Topology::of(network);
         let areoles = Areoles::of(network);
         let junctions = junctions(network);
@@ -127,7 +136,16 @@ impl Measures {
         let ratio = |a: f64, b: f64| (b > 0.0).then(|| a / b);
         let count = |n: usize| n as f64;
         let scaled = |of: fn(&Distances) -> Option<f64>| Some(vla? * of(distances.as_ref()?)?);
+        let courses = Courses::of(network, topology.loops());
+        let architecture = architecture.unwrap_or(courses.architecture);
         let value = |key: &str| match key {
+            "alignment" => Some(courses.alignment),
+            "ends_at_margin" => courses.ends_at_margin,
+            "fork_angle_median" => courses.fork_angle,
+            "parallel_spacing" => courses.spacing,
+            "parallel_spacing_variation" => courses.spacing_variation,
+            "cross_vein_spacing" => courses.cross_spacing,
+            "vla" => vla,
             "loop_index" => ratio(count(list.len()) * blade_area, length * length),
             "mst_ratio" => ratio(topology.spanning_length, length),
             "meshedness" => topology.meshedness(),
@@ -323,7 +341,8 @@ impl Measures {
             blade_area,
             distance_pixel: distances.map(|distances| distances.pixel),
             median_width,
-            rows: rows(value),
+            architecture,
+            rows: rows(architecture, unit == Unit::Millimetre, value),
             others,
             orders: orders(network),
             strahler: strahler(network),
@@ -333,13 +352,13 @@ impl Measures {
         }
     }
 
-    /// How many of the twenty rows are inside their bands.
+    /// How many of the rows are inside their bands.
     #[must_use]
     pub fn rows_inside(&self) -> usize {
         self.rows.iter().filter(|row| row.is_inside()).count()
     }
 
-    /// All measures with the number of their row, the twenty rows first.
+    /// All measures with the number of their row, the rows first.
     pub fn all(&self) -> impl Iterator<Item = (Option<u32>, &Measure)> {
         let rows = self.rows.iter();
         let rows = rows.flat_map(|row| row.measures.iter().map(|m| (Some(row.number), m)));

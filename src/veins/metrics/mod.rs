@@ -13,6 +13,7 @@
 
 pub mod areoles;
 pub mod bins;
+pub mod courses;
 pub mod distances;
 pub mod hierarchy;
 pub mod hull;
@@ -33,4 +34,4 @@ pub mod topology;
 pub use measures::Measures;
 pub use network::{Network, Segment};
 pub use pattern::{APEX_REACH, VeinMetrics};
-pub use rows::{Measure, Row};
+pub use rows::{Architecture, Measure, Row};

@@ -1,10 +1,16 @@
 //! The measures that leaves are compared by, and the bands real leaves lie in.
 //!
+//! Netted leaves of dicotyledons have twenty rows. Open forking veins (ginkgo, ferns) and parallel ones
+//! (grasses) have rows of their own, because most of the twenty measure areoles, which they do not
+//! have or have as long boxes.
+//!
 //! Bands: nine real networks (*Dalbergia miscolobium* of Ronellenfitsch's `nesting`, and leaves of
 //! Lasser's `network_extraction`), widened by 82 published leaves (Blonder's and Fricker's tables,
 //! through `venation_tradeoffs`) where both know a measure. Scale-free but for vein length per area.
 
 use std::ops::RangeInclusive;
+
+use crate::parameter::words;
 
 /// A number and the band that real leaves lie in.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,9 +62,12 @@ impl Row {
     }
 }
 
-/// Row, key, name and band of the measures that count.
+/// Row, key, name and band of a measure that counts.
+type Band = (u32, &'static str, &'static str, RangeInclusive<f64>);
+
+/// Netted leaves.
 #[expect(clippy::approx_constant, reason = "0.318 is measured, not 1/π")]
-const BANDS: [(u32, &str, &str, RangeInclusive<f64>); 22] = [
+const RETICULATE: [Band; 22] = [
     (1, "loop_index", "loop index, areoles x area / length²", 0.16..=0.22),
     (2, "mst_ratio", "spanning tree length / length", 0.38..=0.88),
     (3, "meshedness", "meshedness", 0.13..=0.20),
@@ -83,10 +92,63 @@ const BANDS: [(u32, &str, &str, RangeInclusive<f64>); 22] = [
     (20, "nesting_excess", "nesting minus shuffled", 0.01..=1.0),
 ];
 
-/// The twenty rows, with the value that `value` gives for each key.
-pub(super) fn rows(value: impl Fn(&str) -> Option<f64>) -> Vec<Row> {
+/// Open dichotomous veins. No two meet; nearly all run to the margin, side by side: between parallel
+/// lines the mean distance is a quarter of their spacing. Vein length per area: Boyce, Brodribb, Feild
+/// & Zwieniecki, Proc. R. Soc. B 276, 2009 (about 2 mm/mm² in ginkgo and ferns).
+const DICHOTOMOUS: [Band; 8] = [
+    (1, "loop_index", "loop index, areoles x area / length²", 0.0..=0.001),
+    (2, "mst_ratio", "spanning tree length / length", 0.999..=1.0),
+    (3, "degree_3_share", "three-way share of junctions", 0.95..=1.0),
+    (4, "ends_at_margin", "share of the ends at the margin", 0.8..=1.0),
+    (5, "fork_angle_median", "angle between the two branches of a fork, median", 2.0..=45.0),
+    (6, "tortuosity_median", "tortuosity, median", 1.0..=1.04),
+    (7, "vla_x_distance_mean", "VLA x mean distance to vein", 0.24..=0.32),
+    (8, "vla", "vein length per area, mm/mm²", 1.5..=2.6),
+];
+
+/// Parallel veins of grasses: long ones side by side, and short cross-veins. Lengths as of *Poa* and
+/// *Zea*: 0.1 to 0.25 mm between veins, a cross-vein every 1 to 3 mm, 4 to 9 mm/mm².
+const PARALLEL: [Band; 8] = [
+    (1, "alignment", "alignment of the veins with the blade", 0.8..=1.0),
+    (2, "parallel_spacing_variation", "spacing of long veins, deviation / mean", 0.0..=0.45),
+    (3, "areole_elongation_median", "areole elongation, median", 3.0..=40.0),
+    (4, "degree_3_share", "three-way share of junctions", 0.90..=1.0),
+    (5, "vla_x_distance_mean", "VLA x mean distance to vein", 0.24..=0.36),
+    (6, "vla", "vein length per area, mm/mm²", 4.0..=9.0),
+    (7, "parallel_spacing", "spacing of long veins, mm", 0.1..=0.25),
+    (8, "cross_vein_spacing", "spacing of cross-veins, mm", 1.0..=3.0),
+];
+
+words! {
+    /// What kind of network a leaf has, which says what rows count.
+    pub enum Architecture {
+        /// Netted: areoles closed in by veins of many orders.
+        Reticulate = "reticulate",
+        /// Open and forking: no vein meets another.
+        Dichotomous = "dichotomous",
+        /// Side by side from base to apex, with cross-veins.
+        Parallel = "parallel",
+    }
+}
+
+/// The rows of an architecture, with the value that `value` gives for each key. Lengths in
+/// millimetres need a scale: without one those rows are left out.
+pub(super) fn rows(
+    architecture: Architecture,
+    is_scaled: bool,
+    value: impl Fn(&str) -> Option<f64>,
+) -> Vec<Row> {
+    let bands: &[Band] = match architecture {
+        Architecture::Reticulate => &RETICULATE,
+        Architecture::Dichotomous => &DICHOTOMOUS,
+        Architecture::Parallel => &PARALLEL,
+    };
     let mut rows: Vec<Row> = Vec::new();
-    for (number, key, name, band) in BANDS {
+    for (number, key, name, band) in bands.iter().cloned() {
+        let has_unit = ["vla", "parallel_spacing", "cross_vein_spacing"].contains(&key);
+        if has_unit && !is_scaled {
+            continue;
+        }
         let measure = Measure::new(key, name, value(key), Some(band));
         match rows.last_mut().filter(|row| row.number == number) {
             Some(row) => row.measures.push(measure),

@@ -3,7 +3,8 @@
 //! Veins pull at a junction with a force of their width (Bohn, Andreotti, Douady, Munzinger & Couder,
 //! Phys. Rev. E 65, 2002); in real leaves Σ w e is nearly 0, e being the unit vector to the other end
 //! of each vein. Each sweep moves every junction p by η (Σ w e / Σ w) l, l the shortest of these
-//! distances. The nodes along a vein follow in proportion, so that it keeps its shape.
+//! distances among the veins that get shorter, so that junctions which lie too close part quickly. The
+//! nodes along a vein follow in proportion, so that it keeps its shape.
 //!
 //! Roots, nodes beside the margin and guided veins of the first order stay. A move that would bring a
 //! vein across the margin or another vein is halved twice, then left out.
@@ -20,13 +21,17 @@ use crate::margin::Margin;
 
 /// The share η of the imbalance that one sweep takes away. Beyond 0.5 junctions swing; far below,
 /// more sweeps are needed for the same.
-const SHARE: f64 = 0.25;
+const SHARE: f64 = 0.45;
 
 /// No edge shrinks below this share of its length in a sweep, so that no two nodes meet.
 const LEAST_SHRINK: f64 = 0.5;
 
 /// Nor below this share of a step in all: small areoles do not collapse.
 const LEAST_EDGE: f64 = 0.2;
+
+/// A vein between two junctions shrinks to no less than this many steps: the length of veins would
+/// shrink on and on, and small areoles with it.
+const LEAST_CHAIN: f64 = 0.35;
 
 /// Edges that share a node stay apart by this share of the shorter one.
 const LEAST_GAP: f64 = 0.02;
@@ -111,7 +116,7 @@ impl Relaxation {
         let nearest = ways
             .iter()
             .filter(|towards| towards.dot(force) > 0.0)
-            .map(|towards| towards.length())
+            .map(|towards| (towards.length() - LEAST_CHAIN * self.step).max(0.0))
             .fold(f64::INFINITY, f64::min);
         if pulls > 0.0 && nearest.is_finite() {
             (force * (SHARE * nearest / pulls)).clamp_length_max(self.step / 2.0)

@@ -152,33 +152,8 @@ pub(super) fn lobes(margin: &Margin) -> Vec<Tip> {
     lobes
 }
 
-/// The teeth that the maker of a margin put there, from base to apex on each side.
-fn known_teeth(margin: &Margin) -> Vec<Tip> {
-    let outline = margin.outline();
-    let marks = margin.landmarks();
-    let mut tips = Vec::new();
-    for (i, mark) in marks.iter().enumerate() {
-        let LandmarkKind::Tooth { order } = mark.kind else { continue };
-        // How far it stands out of the line between the low places beside it.
-        let low = |mark: &&Landmark| {
-            matches!(mark.kind, LandmarkKind::Sinus { .. } | LandmarkKind::Valley)
-        };
-        let before = marks[..i].iter().rev().find(low);
-        let after = marks[i + 1..].iter().find(low);
-        let at = outline[mark.vertex];
-        let height = before.zip(after).map(|(a, b)| {
-            let [a, b] = [a.vertex, b.vertex].map(|vertex| outline[vertex]);
-            at.distance(polygon::nearest_on_segment(a, b, at))
-        });
-        // One at the end of a side has a low place on one side only.
-        let height = height.unwrap_or(0.01 * margin.length_mm() / f64::from(order.max(1)));
-        tips.push(tip_at(margin, mark.vertex, height));
-    }
-    tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));
-    tips
-}
-
-/// The same for lobes, without the one at the apex, from apex to base.
+/// The tips of the lobes that the maker of a margin put there, without the one at the apex, from apex
+/// to base on each side.
 fn known_lobes(margin: &Margin) -> Vec<Tip> {
     let near_apex = 0.02 * margin.length_mm();
     let mut tips: Vec<Tip> = margin

@@ -147,7 +147,7 @@ enum Command {
     Compare(Box<compare::Args>),
     /// Find the parameters of real leaves.
     Fit(Box<fit::Args>),
-    /// Measure a vein pattern, grown or real, beside real leaves.
+    /// Measure a vein pattern, grown or real, beside real leaves; or the leaves on a scan.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
     Bench(bench::Args),

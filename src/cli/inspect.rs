@@ -1,9 +1,13 @@
-//! `venation inspect`: a vein pattern measured, beside real leaves.
+//! `venation inspect`: a vein pattern measured, beside real leaves; or the blades in a picture.
+
+mod blades;
 
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
 use venation::io::network::{self, ReadNetwork};
+use venation::io::outline;
+use venation::margin::blades::THIN;
 use venation::veins::metrics::measures::{Measures, Unit};
 use venation::veins::metrics::{Architecture, Measure, picture};
 
@@ -16,12 +20,16 @@ Examples:
   venation inspect out/fagus-sylvatica_veins.json --json > measures.json
   venation inspect cleared-leaf.png                   a real network, veins white on black or back
   venation inspect cleared-leaf.png --px-per-mm 252   the same with lengths in mm
+  venation inspect scan.jpg --px-per-mm 11.81         every blade on a scan, with its area and length
+
+A picture whose largest part is on the whole narrower than 2 % of its extent is a net of veins, any other shows blades; --blades and --veins settle it. Areas are those within the outline, petiole and holes (listed apart) included; length is the greatest extent, base to apex leaves the petiole away.
 
 The twenty rows come first: measures free of scale, each with the band that real leaves lie in. A row \
 counts when all its values are inside. \
 Open forking veins (ginkgo) and parallel ones (grass) have eight rows of their own. Pictures need veins 6 px wide or more for rows 16 to 19.")]
 pub(crate) struct Args {
-    /// A leaf's folder, its NAME_veins.json, or a black-and-white picture (PNG, JPEG) of veins.
+    /// A leaf's folder, its NAME_veins.json, or a picture (PNG, JPEG) of veins, black and white, or of
+    /// leaves.
     path: PathBuf,
     /// Everything as one JSON document.
     #[arg(long, conflicts_with = "csv")]
@@ -29,6 +37,12 @@ pub(crate) struct Args {
     /// Every measure as a line of CSV.
     #[arg(long)]
     csv: bool,
+    /// The picture shows leaves: list every blade with its area and length.
+    #[arg(long, conflicts_with = "veins")]
+    blades: bool,
+    /// The picture shows veins, whatever it looks like.
+    #[arg(long)]
+    veins: bool,
     /// Scale of a picture: lengths are in mm then.
     #[arg(long, value_name = "N")]
     px_per_mm: Option<f64>,
@@ -48,6 +62,9 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if let Some(scale) = args.px_per_mm.filter(|scale| !(1e-3..=1e6).contains(scale)) {
         let problem = format!("--px-per-mm: {scale} is not between 0.001 and 1000000");
         return Err(Failure::Input(problem));
+    }
+    if args.shows_blades()? {
+        return blades::run(args, context);
     }
     let read = network::read(&args.path, args.px_per_mm)
         .map_err(|error| Failure::Input(error.to_string()))?;
@@ -74,6 +91,17 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     };
     write!(context.stdout, "{text}")?;
     Ok(())
+}
+
+impl Args {
+    /// Whether to look for blades: asked for, or a picture of things too wide for veins.
+    fn shows_blades(&self) -> Result<bool, Failure> {
+        if self.blades || self.veins || !network::is_picture(&self.path) {
+            return Ok(self.blades);
+        }
+        // What shows no blade at all may still show veins, or says itself what is wrong with it.
+        Ok(outline::blades(&self.path).is_ok_and(|found| found.thinness >= THIN))
+    }
 }
 
 fn number(value: Option<f64>) -> String {

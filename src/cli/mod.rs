@@ -157,7 +157,7 @@ enum Command {
     Fit(Box<fit::Args>),
     /// One leaf turning into another: frames, a strip and an animation.
     Morph(Box<morph::Args>),
-    /// Measure a vein pattern, grown or real, beside real leaves.
+    /// Measure a vein pattern, grown or real, beside real leaves; or the leaves on a scan.
     Inspect(inspect::Args),
     /// Time the growth of veins against the number of auxin sources.
     Bench(bench::Args),

@@ -145,6 +145,33 @@ fn edges_touch(polygon: &[DVec2], i: usize, j: usize) -> bool {
     segments_touch(a, b, c, d)
 }
 
+/// The corners of the convex hull of some points, anticlockwise (Andrew's monotone chain, 1979).
+#[must_use]
+pub fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
+    let mut sorted = points.to_vec();
+    sorted.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.dedup();
+    if sorted.len() < 3 {
+        return sorted;
+    }
+    let chain = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut hull: Vec<DVec2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = hull[..]
+                && cross(a, b, p) <= 0.0
+            {
+                hull.pop();
+            }
+            hull.push(p);
+        }
+        hull.pop();
+        hull
+    };
+    let mut hull = chain(&mut sorted.iter().copied());
+    hull.extend(chain(&mut sorted.iter().rev().copied()));
+    hull
+}
+
 /// Points along the boundary at equal steps of at most `step`, starting at vertex 0.
 #[must_use]
 pub fn resampled(polygon: &[DVec2], step: f64) -> Vec<DVec2> {
@@ -277,6 +304,14 @@ mod tests {
         let dense = resampled(&square(), 0.25);
         let kept = simplified(&dense, 1e-9, &[]);
         assert_eq!(kept.len(), 4);
+    }
+
+    #[test]
+    fn a_hull_has_the_corners_and_nothing_else() {
+        let mut points = resampled(&square(), 0.3);
+        points.extend([DVec2::new(1.0, 1.2), DVec2::new(0.4, 1.9)]);
+        points.extend(square());
+        assert_eq!(convex_hull(&points), square());
     }
 
     #[test]

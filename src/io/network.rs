@@ -40,6 +40,12 @@ const GRAPH_ENDING: &str = "_veins.json";
 /// Vein graphs may have this many bytes: some ten million nodes.
 const MOST_BYTES: u64 = 1 << 30;
 
+/// Whether a file can be read and begins as the pictures do that [`read`] reads.
+#[must_use]
+pub fn is_picture(path: &Path) -> bool {
+    path.is_file() && head(path).is_ok_and(|head| mask::is_picture(&head))
+}
+
 /// Reads a leaf folder with a `NAME_veins.json`, such a file, or a black-and-white picture; a
 /// picture has lengths in pixels unless it is known how many go to the millimetre.
 ///

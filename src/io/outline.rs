@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use crate::geometry::{Rect, polygon};
+use crate::margin::blades::{self, Blades};
 use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
 use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch};
@@ -154,6 +155,25 @@ const FEW_POINTS: usize = 32;
 /// [`Margin::new`] refuses, and for a root away from the leaf.
 pub fn import(path: &Path, options: &OutlineOptions) -> Result<ImportedOutline, OutlineError> {
     read(path, options).map_err(|problem| OutlineError { path: path.to_owned(), problem })
+}
+
+/// Finds every blade in a PNG or JPEG picture.
+///
+/// # Errors
+///
+/// [`OutlineError`], with the path: for files that are no picture and pictures without a blade.
+pub fn blades(path: &Path) -> Result<Blades, OutlineError> {
+    let find = || -> Result<Blades, OutlineProblem> {
+        let mut head = Vec::new();
+        File::open(path)?.take(16).read_to_end(&mut head)?;
+        let format = picture::Format::of(&head)
+            .ok_or_else(|| OutlineProblem::content("is not a PNG or JPEG picture"))?;
+        let (picture, mut notes) = picture::read(path, format)?;
+        let mut found = blades::find(&picture)?;
+        notes.append(&mut found.notes);
+        Ok(Blades { notes, ..found })
+    };
+    find().map_err(|problem| OutlineError { path: path.to_owned(), problem })
 }
 
 fn read(path: &Path, options: &OutlineOptions) -> Result<ImportedOutline, OutlineProblem> {

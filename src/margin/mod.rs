@@ -7,6 +7,7 @@
 //! Each kind makes an [`Outline`]; [`Margin::from_outline`] checks it once. What the maker knows of
 //! the outline (lobe tips, valleys, teeth) travels along as [`Landmark`]s.
 
+pub mod blades;
 pub mod curve;
 pub mod detail;
 pub mod fit;

@@ -61,26 +61,7 @@ const LEAST_AREA: usize = 40;
 pub fn trace(picture: &Picture, root: Option<DVec2>) -> Result<Traced, MarginError> {
     let pixels = &picture.pixels;
     let (width, height) = (pixels.width(), pixels.height());
-    if width < MIN_SIDE || height < MIN_SIDE {
-        let problem = format!(
-            "the picture is {width} x {height} px; a leaf needs at least {MIN_SIDE} x {MIN_SIDE}"
-        );
-        return Err(MarginError::Picture(problem));
-    }
-    let mut notes = Vec::new();
-    // How far each pixel is from the background, and where to split that.
-    let raw = difference(pixels);
-    let level = split(&raw)?;
-    let raw = if is_noisy(&raw, level) {
-        notes.push("speckled picture: specks smoothed away".to_owned());
-        smooth::median(&smooth::median(&raw))
-    } else {
-        raw
-    };
-    // A picture this small has no detail to spare.
-    let sigma = if width.max(height) < 150 { 0.5 } else { 0.8 };
-    let mut field = smooth::gaussian(&raw, sigma);
-    drop(raw);
+    let Field { mut field, level, mut notes } = field(pixels)?;
 
     // The leaf: the largest region, or the one at the root.
     let regions = Components::of(&field.map(|&v| v > level));
@@ -129,6 +110,36 @@ pub fn trace(picture: &Picture, root: Option<DVec2>) -> Result<Traced, MarginErr
     let outline = contour::largest_outline(&field, level)
         .ok_or_else(|| MarginError::Picture("the picture shows no leaf".into()))?;
     Ok(Traced { outline, cuts: Vec::new(), notes })
+}
+
+/// How far every pixel is from the background, where leaves begin, and what was done.
+pub(super) struct Field {
+    pub(super) field: Grid<f32>,
+    pub(super) level: f32,
+    pub(super) notes: Vec<String>,
+}
+
+/// The picture as distances from its background, smoothed, and the level that parts leaf from it.
+pub(super) fn field(pixels: &Grid<[u8; 4]>) -> Result<Field, MarginError> {
+    let (width, height) = (pixels.width(), pixels.height());
+    if width < MIN_SIDE || height < MIN_SIDE {
+        let problem = format!(
+            "the picture is {width} x {height} px; a leaf needs at least {MIN_SIDE} x {MIN_SIDE}"
+        );
+        return Err(MarginError::Picture(problem));
+    }
+    let mut notes = Vec::new();
+    let raw = difference(pixels);
+    let level = split(&raw)?;
+    let raw = if is_noisy(&raw, level) {
+        notes.push("speckled picture: specks smoothed away".to_owned());
+        smooth::median(&smooth::median(&raw))
+    } else {
+        raw
+    };
+    // A picture this small has no detail to spare.
+    let sigma = if width.max(height) < 150 { 0.5 } else { 0.8 };
+    Ok(Field { field: smooth::gaussian(&raw, sigma), level, notes })
 }
 
 /// The pixels along the border, once each.

@@ -55,15 +55,21 @@ pub fn minimum(
     };
     let mut first = start.to_vec();
     inside(&mut first);
-    let mut simplex: Vec<(f64, Vec<f64>)> = vec![(call(&first).0, first.clone())];
-    for i in 0..n {
-        let mut x = first.clone();
-        // Away from a bound that is too near.
-        let step = if x[i] + steps[i] > bounds[i][1] { -steps[i] } else { steps[i] };
-        x[i] += step;
-        inside(&mut x);
-        simplex.push((call(&x).0, x));
-    }
+    type Simplex = Vec<(f64, Vec<f64>)>;
+    let corners = |value: f64, at: &[f64], call: &mut dyn FnMut(&[f64]) -> (f64, usize)| {
+        let mut simplex: Simplex = vec![(value, at.to_vec())];
+        for i in 0..n {
+            let mut x = at.to_vec();
+            // Away from a bound that is too near.
+            let step = if x[i] + steps[i] > bounds[i][1] { -steps[i] } else { steps[i] };
+            x[i] += step;
+            inside(&mut x);
+            simplex.push((call(&x).0, x));
+        }
+        simplex
+    };
+    let mut simplex = corners(call(&first).0, &first, &mut call);
+    let mut restarted = f64::INFINITY;
     let dimension = (n as f64).max(2.0);
     let (expand, contract, shrink) =
         (1.0 + 2.0 / dimension, 0.75 - 0.5 / dimension, 1.0 - 1.0 / dimension);
@@ -83,8 +89,20 @@ pub fn minimum(
         };
         let reflected = along(1.0);
         let (at_reflected, calls) = call(&reflected);
-        if spread < search.tolerance || calls >= search.most_calls {
+        if calls >= search.most_calls {
             break;
+        }
+        if spread < search.tolerance {
+            // A simplex pressed flat against a bound cannot leave along it: once more from there, with
+            // corners in every direction, until that finds nothing better.
+            let (least, at) = simplex[0].clone();
+            let pressed = at.iter().zip(bounds).any(|(x, [low, high])| x == low || x == high);
+            if !pressed || least >= restarted {
+                break;
+            }
+            restarted = least;
+            simplex = corners(least, &at, &mut call);
+            continue;
         }
         simplex[n] = if at_reflected < simplex[0].0 {
             let expanded = along(expand);

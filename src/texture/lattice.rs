@@ -11,7 +11,7 @@ use super::pigment::{Albedo, Amounts};
 use super::spectrum::{Spectrum, encoded};
 
 /// Nodes on each axis.
-const NODES: [usize; 5] = [16, 6, 9, 8, 5];
+const NODES: [usize; 5] = [18, 8, 9, 8, 5];
 
 /// Amounts at which an axis has come half way; for the structure, its range.
 const HALF: [f64; 4] = [12.0, 8.0, 8.0, 0.8];
@@ -51,6 +51,14 @@ const STRIDES: [usize; 5] = {
     strides
 };
 
+/// A channel of the light sent back and let through. At no wavelength is that more than falls on the
+/// leaf, but a pale saturated yellow lies outside sRGB and would have more red than white has: both
+/// are brought down together. In between the nodes it holds too, since sRGB's curve is concave.
+fn held(back: f64, through: f64) -> [f64; 2] {
+    let excess = (back + through).max(1.0);
+    [back / excess, through / excess]
+}
+
 /// Where amounts lie on the first four axes, in nodes.
 #[inline]
 fn places(pigments: [f32; 4], scale: [f32; 4]) -> [f32; 4] {
@@ -82,8 +90,9 @@ impl Lattice {
             };
             let mut node = [0.0; 8];
             for c in 0..3 {
-                node[c] = encoded(back[c]) as f32;
-                node[c + 3] = encoded(seen.through[c]) as f32;
+                let [back, through] = held(back[c], seen.through[c]);
+                node[c] = encoded(back) as f32;
+                node[c + 3] = encoded(through) as f32;
             }
             node
         };
@@ -136,7 +145,7 @@ mod tests {
     fn between_the_nodes_the_lattice_is_the_model_to_two_steps_of_eight_bits() {
         let (lattice, spectrum) = (of(Albedo::Total), Spectrum::new());
         let mut rng = Seed(5).stream(Stage::Tissue);
-        let mut squares = 0.0;
+        let (mut squares, mut worst) = (0.0, (0.0_f64, [0.0; 5], 0));
         for _ in 0..3000 {
             let state = [
                 rng.between(0.0, 75.0),
@@ -148,14 +157,17 @@ mod tests {
             let seen = spectrum.seen(&Amounts::of(state));
             let found = lattice.at(state.map(|v| v as f32));
             for c in 0..3 {
-                for (found, exact) in [(found[c], seen.total[c]), (found[c + 3], seen.through[c])] {
+                let exact = held(seen.total[c], seen.through[c]);
+                for (found, exact) in [(found[c], exact[0]), (found[c + 3], exact[1])] {
                     let off = (f64::from(found).max(0.0) - encoded(exact).max(0.0)) * 255.0;
-                    assert!(off.abs() < 6.0, "{state:?}, channel {c}: off by {off}");
+                    if off.abs() > worst.0 {
+                        worst = (off.abs(), state, c);
+                    }
                     squares += off * off / (6.0 * 3000.0);
                 }
             }
         }
-        assert!(squares.sqrt() < 1.2, "{}", squares.sqrt());
+        assert!(squares.sqrt() < 1.2 && worst.0 < 6.0, "{} {worst:?}", squares.sqrt());
     }
 
     #[test]

@@ -51,11 +51,22 @@ fn keep_coverage(picture: &mut Grid<[u8; 4]>, alpha: &Grid<f32>, share: f64) {
     let least = kept.checked_sub(1).map_or(1.0, |last| ordered[last].max(1e-4));
     // Just over one half as a byte: 128.
     let scale = if kept == 0 { 1.0 } else { 128.0 / 255.0 / least };
+    // Of texels that are alike at the threshold only as many pass as have to, spread over the picture.
+    let above = ordered.partition_point(|&alpha| alpha > least);
+    let mut surplus: Vec<usize> =
+        (0..alpha.values().len()).filter(|&i| alpha.values()[i] == least).collect();
+    // Multiples of the golden section modulo 2³² leave no large gaps (Knuth's multiplicative hash).
+    surplus.sort_unstable_by_key(|&i| ((i as u32).wrapping_mul(0x9E37_79B1), i));
+    let surplus = surplus.split_off(kept.saturating_sub(above).min(surplus.len()));
     for (texel, alpha) in picture.values_mut().iter_mut().zip(alpha.values()) {
         // What fails on no account passes by rounding.
         let scaled = (alpha * scale).min(1.0) * 255.0;
         let byte = if *alpha < least { scaled.round().min(127.0) } else { scaled.round() };
         texel[3] = byte as u8;
+    }
+    for i in surplus {
+        let texel = &mut picture.values_mut()[i];
+        texel[3] = texel[3].min(127);
     }
 }
 

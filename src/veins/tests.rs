@@ -55,7 +55,8 @@ fn relaxed_junctions_balance_better_and_cross_nothing() {
             leaf
         });
         let (was, is) = (imbalance(&before), imbalance(&after));
-        assert!(is.0 < was.0 * 0.7 && is.1 == was.1, "{algorithm}: {was:?}, then {is:?}");
+        // Stars are taken apart first: more junctions of three.
+        assert!(is.0 < was.0 * 0.7 && is.1 >= was.1, "{algorithm}: {was:?}, then {is:?}");
         let [was, is] = [&before, &after].map(|leaf| crossings(leaf.venation.graph()));
         assert!(is <= was, "{algorithm}: {was} edges crossed others, {is} do");
         let again = beech(&[&algorithm, "veins.relaxation=5"]);

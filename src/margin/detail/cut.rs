@@ -56,6 +56,9 @@ const FRAME: f64 = 0.15;
 const BOW: f64 = 0.22;
 const FLEXURE: f64 = 0.8;
 
+/// Teeth of a depth of one in this bow fully, shallower ones less.
+const BOWED_FROM: f64 = 12.0;
+
 /// Teeth on the flank towards the tip lean this much as the others do.
 const UPPER_LEAN: f64 = -0.4;
 
@@ -166,7 +169,9 @@ impl Cutter<'_> {
         let tip_foot = tip_at.clamp(0.15, 0.85);
         let stations = [0.0, tip_foot, 1.0];
         let mut flanks: [Vec<Node>; 2] = [0, 1].map(|k| {
-            let line = self.flank(k, corners[k], corners[k + 1], frame.sag());
+            // A flank that hardly rises hardly bows: where teeth fade, nothing is left of them.
+            let rise = (BOWED_FROM * tooth.depth).min(1.0);
+            let line = self.flank(k, (corners[k], corners[k + 1]), rise, frame.sag());
             let last = line.len() - 1;
             let foot = |i: usize| {
                 let share = stations[k] + (stations[k + 1] - stations[k]) * i as f64 / last as f64;
@@ -222,12 +227,13 @@ impl Cutter<'_> {
         nodes.extend_from_slice(upper);
     }
 
-    /// A flank in the frame of its tooth (mm along the edge, mm out), ends included; the edge bends by
-    /// `sag` beneath it.
-    fn flank(&self, k: usize, from: DVec2, to: DVec2, sag: f64) -> Vec<DVec2> {
+    /// A flank in the frame of its tooth (mm along the edge, mm out), ends included, with a share
+    /// of its bow; the edge bends by `sag` beneath it.
+    fn flank(&self, k: usize, (from, to): (DVec2, DVec2), share: f64, sag: f64) -> Vec<DVec2> {
         let along = to - from;
         let out = along.perp();
-        let (bow, flexure) = (self.form.bow[k] * 4.0 * BOW, self.form.flexure[k] * FLEXURE);
+        let bow = share * self.form.bow[k] * 4.0 * BOW;
+        let flexure = share * self.form.flexure[k] * FLEXURE;
         // Concave at the sinus and convex at the tip is flexuous, on both flanks.
         let flexure = if k == 0 { -flexure } else { flexure };
         let bulge = along.length() * (bow.abs() + 3.0 * flexure.abs() + 0.05) + 2.0 * sag;

@@ -8,8 +8,9 @@ use crate::margin::{LandmarkKind, Margin, MarginError, MarginSpec, Outline};
 /// Bisections for a bound: it is printed with three digits.
 const HALVINGS: usize = 12;
 
-/// The narrowest a lobe is made on the way to a bound, as a share of what it is.
-const NARROWEST: f64 = 0.02;
+/// Widths that are tried first, from wide to narrow, as shares of what it is: a lobe much narrower than
+/// its valleys are apart crosses itself as well.
+const SHARES: [f64; 9] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
 
 /// For an outline that crosses itself near `at` (relative): the waist of the lobe there, and the widest
 /// it may be with everything else as it is; `None` when no width of that lobe helps.
@@ -48,10 +49,8 @@ pub(in crate::margin) fn advice(
             .and_then(|o| Margin::from_outline(o.peltate(spec.base_inset).scaled(scale), ""))
             .is_ok()
     };
-    if !works(NARROWEST) {
-        return None;
-    }
-    let (mut low, mut high) = (NARROWEST, 1.0);
+    let first = SHARES.iter().position(|&share| works(share))?;
+    let (mut low, mut high) = (SHARES[first], if first == 0 { 1.0 } else { SHARES[first - 1] });
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
         if works(middle) {

@@ -188,12 +188,12 @@ impl<S: Send + Sync> Field<S> {
         if finds.buffer.len() < needed {
             finds.buffer.resize(2 * needed, Hit { slot: 0, node: 0, distance2: 0.0 });
         }
-        let first = run.start as u32;
         let mut len = finds.len;
-        let known = self.places[run.clone()].iter().zip(&self.bound2[run]);
-        for (i, (q, &bound2)) in known.enumerate() {
+        let slots = run.start as u32..;
+        let sources = self.places[run.clone()].iter().zip(&self.bound2[run]);
+        for (slot, (q, &bound2)) in slots.zip(sources) {
             let distance2 = ((p - *q) * stretch).length_squared();
-            finds.buffer[len] = Hit { slot: first + i as u32, node, distance2 };
+            finds.buffer[len] = Hit { slot, node, distance2 };
             len += usize::from((distance2 < bound2) & (distance2 <= limit2));
         }
         finds.len = len;

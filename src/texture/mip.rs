@@ -249,7 +249,9 @@ mod tests {
         assert_eq!(levels.iter().map(SideMaps::size).collect::<Vec<_>>(), sizes(256));
         for level in &levels[..6] {
             let kept = coverage(&level.base_colour);
-            assert!((kept - share).abs() < 0.01, "{kept} of {share} at {}", level.size());
+            // To half a texel: there are only sixteen on the smallest of these levels.
+            let half = 0.5 / (level.size() * level.size()) as f64;
+            assert!((kept - share).abs() <= half + 1e-9, "{kept} of {share} at {}", level.size());
             for texel in level.base_colour.values().iter().filter(|texel| texel[3] > 0) {
                 assert_eq!(texel[..3], [60, 140, 40]);
             }

@@ -6,7 +6,7 @@ use venation::observer::Silent;
 use venation::presets::PRESETS;
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
-use venation::veins::guides::SecondaryType;
+use venation::veins::guides::{PrimaryType, SecondaryType};
 use venation::veins::{self, NodeId, VeinKind, Venation};
 
 fn grown(spec: &LeafSpec, seed: u64) -> (GrowingBlade, Venation) {
@@ -25,6 +25,9 @@ fn presets_keep_what_venation_promises_whatever_the_growth() {
             let mut spec = document.resolve(Seed(seed)).expect("it resolves");
             spec.growth.r#type = growth;
             spec.veins.spawn_rate = 40.0;
+            // Both draw edges out: beside junctions that move, and along veins that bow.
+            spec.veins.relaxation = 0;
+            spec.veins.sinuosity = 0.0;
             if growth == GrowthType::Marginal {
                 spec.growth.scale = 0.8;
             }
@@ -36,7 +39,8 @@ fn presets_keep_what_venation_promises_whatever_the_growth() {
             let longest = 1.5 * 1.2 * spec.veins.node_step_mm;
             let at = |node: NodeId| venation.graph().positions()[node as usize];
             for (a, b) in venation.graph().edges() {
-                assert!(at(a).distance(at(b)) <= longest, "{name}: long at {}", at(b));
+                let length = at(a).distance(at(b));
+                assert!(length <= longest, "{name}: {length} of {longest} at {}", at(b));
             }
         }
     }
@@ -64,19 +68,25 @@ fn in_every_preset_the_midrib_is_straight_and_the_widest_vein() {
                 node = parent;
             }
             assert!(path / at(tip).distance(at(node)) <= 1.05, "{} {seed}", preset.name);
+            // Of a palmate leaf on each half of the blade: its primaries bear them on both of their sides.
+            let palmate = spec.veins.guides.primary == PrimaryType::Actinodromous;
             let secondaries = |side: f64| {
                 let edges = graph.edges();
                 let leaves = edges.filter(|&(a, b)| {
                     kind(a) == VeinKind::Primary && kind(b) == VeinKind::Secondary
                 });
-                leaves.filter(|&(a, b)| (at(b).x - at(a).x) * side > 0.0).count() as i64
+                leaves
+                    .filter(|&(a, b)| (at(b).x - if palmate { 0.0 } else { at(a).x }) * side > 0.0)
+                    .count() as i64
             };
             // Fans and blades of grass have none.
             if spec.veins.guides.secondary == SecondaryType::None {
                 continue;
             }
             let (right, left) = (secondaries(1.0), secondaries(-1.0));
-            assert!(right >= 4 && (right - left).abs() <= 3, "{} {right} {left}", preset.name);
+            // Of many pairs, as a chestnut has them, an eighth.
+            let most = 3.max((right + left) / 8);
+            assert!(right >= 4 && (right - left).abs() <= most, "{} {right} {left}", preset.name);
         }
     }
 }

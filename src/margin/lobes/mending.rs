@@ -9,8 +9,11 @@ use crate::margin::{LandmarkKind, Margin, MarginError, MarginSpec, Outline};
 const HALVINGS: usize = 12;
 
 /// Widths that are tried first, from wide to narrow, as shares of what it is: a lobe much narrower than
-/// its valleys are apart crosses itself as well.
+/// its valleys are apart crosses itself as well, so the half that is narrow already stays.
 const SHARES: [f64; 9] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
+
+/// So many lobes around a crossing are looked at.
+const TRIED: usize = 4;
 
 /// For an outline that crosses itself near `at` (relative): the waist of the lobe there, and the widest
 /// it may be with everything else as it is; `None` when no width of that lobe helps.
@@ -24,13 +27,28 @@ pub(in crate::margin) fn advice(
         let off = |i: usize| crossing.points[i].distance_squared(at);
         off(i).total_cmp(&off(j))
     })?;
-    // The tip between the valleys around that vertex.
-    let tip = crossing
+    // The lobes by how far along the outline their tips are: first the one between the valleys around
+    // that vertex; where it is not the one to blame, its neighbours.
+    let mut tips: Vec<usize> = crossing
         .landmarks
         .iter()
         .filter(|mark| matches!(mark.kind, LandmarkKind::LobeTip { .. }))
-        .min_by_key(|mark| mark.vertex.abs_diff(nearest))?;
-    let index = record_of(records, crossing.points[tip.vertex], spec.base_inset)?;
+        .map(|mark| mark.vertex)
+        .collect();
+    tips.sort_by_key(|vertex| vertex.abs_diff(nearest));
+    tips.into_iter().take(TRIED).find_map(|tip| {
+        let index = record_of(records, crossing.points[tip], spec.base_inset)?;
+        bound(spec, records, index, at)
+    })
+}
+
+/// The widest that a lobe may be.
+fn bound(
+    spec: &MarginSpec,
+    records: &[LobeRecord],
+    index: usize,
+    at: DVec2,
+) -> Option<MarginError> {
     let listed = !spec.lobe.is_empty();
     let record = &records[index];
     let upper = record.upper.waist_x >= record.lower.waist_x;
@@ -40,8 +58,8 @@ pub(in crate::margin) fn advice(
         for (i, lobe) in narrower.iter_mut().enumerate() {
             // In the shorthand all lobes have one shape.
             if i == index || !listed {
-                lobe.lower.waist_x *= share;
-                lobe.upper.waist_x *= share;
+                lobe.lower.waist_x = lobe.lower.waist_x.min(value * share);
+                lobe.upper.waist_x = lobe.upper.waist_x.min(value * share);
             }
         }
         let scale = DVec2::splat(spec.length_mm);
@@ -69,7 +87,7 @@ pub(in crate::margin) fn advice(
         key: format!("{group}.{half}.waist_x"),
         value,
         problem: format!(
-            "is too wide beside its neighbours; take {most} or less, with the other half in proportion"
+            "is too wide beside its neighbours; take {most} or less, and no more for the other half"
         ),
     })
 }

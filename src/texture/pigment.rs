@@ -2,8 +2,8 @@
 //! how the leaf's age and health change them.
 //!
 //! Source of the schemes: Foster, appendix B.3, which spreads a second colour from the veins, the
-//! edges or speckles. Here the schemes spread amounts of pigments ([`amounts`]) or, as in the source,
-//! colours in hue, saturation and value ([`hsv`]).
+//! edges or speckles. Here the schemes spread amounts of pigments (`amounts`) or, as in the source,
+//! colours in hue, saturation and value (`hsv`).
 
 mod amounts;
 mod hsv;

@@ -1,9 +1,9 @@
 //! The parametric leaf nearest to a real outline: Garg's named future work (section 8.1).
 //!
 //! Each side of the blade is cut at its feet (base, valleys) and tips. Valleys are looked for where
-//! the margin is incised ([`incisions`]); tips and valleys then move along the margin to where the
-//! halves of lobes between them fit best ([`flank`]). A half is the curve of section 5.3 with four
-//! numbers ([`half`]), found by a search that at last makes nearly the greatest distance least. The
+//! the margin is incised (`incisions`); tips and valleys then move along the margin to where the
+//! halves of lobes between them fit best (`flank`). A half is the curve of section 5.3 with four
+//! numbers (`half`), found by a search that at last makes nearly the greatest distance least. The
 //! simplest leaf that is near enough is taken: unilobed, with extensions, then lobes.
 //!
 //! A lobe has twelve numbers at most: four for either half, two for its tip, two for a valley. On the

@@ -1,5 +1,5 @@
-//! `venation compare`: growth types, scatter patterns, vein algorithms or what orders veins, side by side, labelled, with
-//! their measures.
+//! `venation compare`: growth types, scatter patterns, vein algorithms or what orders veins, side by
+//! side, labelled, with their measures.
 
 mod cases;
 mod season;
@@ -165,6 +165,7 @@ fn through_the_year(
     }
     Ok(())
 }
+
 /// The seeds of a contact sheet unless others are asked for.
 const SHEET_SEEDS: &str = "1-12";
 
@@ -179,17 +180,16 @@ fn cell(document: &Document, case: Case, seed: u64, shown: bool) -> Result<Cell,
     let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
     let metrics = VeinMetrics::of(&grown.venation, &grown.margin);
     let hierarchy = Hierarchy::of(&grown.venation, &grown.margin);
-    let panel = shown.then(|| panel(case, &spec, &grown, &metrics, seed)).transpose()?;
-    Ok(Cell { case, seed, metrics, hierarchy, panel })
+    let mut cell = Cell { case, seed, metrics, hierarchy, panel: None };
+    if shown {
+        cell.panel = Some(panel(&cell, &spec, &grown)?);
+    }
+    Ok(cell)
 }
 
-fn panel(
-    case: Case,
-    spec: &LeafSpec,
-    grown: &Grown,
-    metrics: &VeinMetrics,
-    seed: u64,
-) -> Result<Panel, Failure> {
+fn panel(cell: &Cell, spec: &LeafSpec, grown: &Grown) -> Result<Panel, Failure> {
+    let Cell { case, seed, metrics, .. } = cell;
+    let (case, seed) = (*case, *seed);
     let nodes = format!("{} nodes, {} tips", metrics.nodes, metrics.tips);
     let label = case.label();
     if let Case::Scatter(..) = case {
@@ -212,7 +212,7 @@ fn panel(
     // Veins show best from below.
     let picture = textures.back.base_colour;
     if let Case::Emergence(_) = case {
-        let Some(found) = Hierarchy::of(&grown.venation, &grown.margin) else {
+        let Some(found) = cell.hierarchy else {
             return Err(Failure::Unexpected("no midrib to measure".into()));
         };
         let [right, left] = found.secondaries;

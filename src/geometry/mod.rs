@@ -1,5 +1,6 @@
 //! Mathematics that has never heard of leaves. Vectors are glam's `DVec2`.
 
+pub mod alignment;
 pub mod bspline;
 pub mod deviation;
 pub mod minimise;

@@ -6,26 +6,11 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::support::{contents, fail, fresh, run, succeed};
+use crate::support::{self, FEW_VEINS, contents, fail, fresh, run, succeed};
 
-/// Flags that make a small leaf quickly.
-const SMALL: &[&str] = &[
-    "--size",
-    "64",
-    "--maps",
-    "basecolor,height,orm",
-    "--set",
-    "veins.kill_distance_mm=4",
-    "--set",
-    "veins.source_spawn_distance_mm=5",
-    "--set",
-    "veins.vein_spawn_distance_mm=5",
-    "--set",
-    "veins.node_step_mm=1",
-];
-
+/// A command that makes small leaves and few of their maps.
 fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
-    arguments.iter().copied().chain(SMALL.iter().copied()).collect()
+    [&support::small(arguments)[..], &["--maps", "basecolor,height,orm"]].concat()
 }
 
 /// The files below a folder without the manifests of shards.
@@ -164,7 +149,7 @@ fn a_dry_run_lists_what_the_run_then_writes_and_writes_nothing() {
     ];
     for arguments in commands {
         let folder = fresh();
-        let small: Vec<&str> = SMALL
+        let small: Vec<&str> = small(&[])
             .chunks(2)
             .filter(|flag| match arguments[0] {
                 "compare" => flag[0] != "--maps",
@@ -193,9 +178,8 @@ fn a_dry_run_lists_what_the_run_then_writes_and_writes_nothing() {
 fn an_atlas_has_leaves_that_keep_apart_and_ground_that_is_filled() {
     let folder = fresh();
     let flags = ["--seeds", "1-6", "--size", "512", "--padding", "8", "-o", "out"];
-    let without_size: Vec<&str> = SMALL[4..].to_vec();
     let flags = [&flags[..], &["--maps", "basecolor,height"]].concat();
-    let atlas = [&["atlas", "aspen"][..], &flags, &without_size].concat();
+    let atlas = [&["atlas", "aspen"][..], &flags, FEW_VEINS].concat();
     succeed(folder.path(), &[&atlas[..], &["-t", "1"]].concat());
     let out = folder.path().join("out");
     let json = std::fs::read_to_string(out.join("atlas.json")).unwrap();
@@ -278,7 +262,7 @@ fn an_atlas_has_leaves_that_keep_apart_and_ground_that_is_filled() {
     succeed(folder.path(), &[&atlas[..], &["-t", "2", "--force"]].concat());
     assert!(before == contents(&out));
     let crowd = ["atlas", "aspen", "--seeds", "1-40", "--size", "128", "--padding", "20"];
-    let message = fail(folder.path(), 2, &[&crowd[..], &["-o", "no"], &without_size].concat());
+    let message = fail(folder.path(), 2, &[&crowd[..], &["-o", "no"], FEW_VEINS].concat());
     assert!(message.contains("do not fit on 128 pixels"), "{message}");
 }
 
@@ -287,8 +271,7 @@ fn a_contact_sheet_shows_every_seed() {
     let folder = fresh();
     let sheet = |seeds: &str, out: &str| {
         let arguments = ["compare", "beech", "--by", "seed", "--seeds", seeds, "-o", out];
-        let maps = SMALL[4..].to_vec();
-        succeed(folder.path(), &[&arguments[..], &["--size", "64"], &maps].concat());
+        succeed(folder.path(), &[&arguments[..], &["--size", "64"], FEW_VEINS].concat());
         let picture = image::open(folder.path().join(out)).unwrap();
         (picture.width(), picture.height())
     };

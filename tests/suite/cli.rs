@@ -1,24 +1,6 @@
 //! The command line as a person types it: messages, exit codes, files.
 
-use crate::support::{assert_same, contents, fail, fresh, run, succeed};
-
-/// Flags that make a small leaf quickly.
-const SMALL: &[&str] = &[
-    "--size",
-    "64",
-    "--set",
-    "veins.kill_distance_mm=4",
-    "--set",
-    "veins.source_spawn_distance_mm=5",
-    "--set",
-    "veins.vein_spawn_distance_mm=5",
-    "--set",
-    "veins.node_step_mm=1",
-];
-
-fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
-    arguments.iter().copied().chain(SMALL.iter().copied()).collect()
-}
+use crate::support::{assert_same, contents, fail, fresh, run, small, succeed};
 
 #[test]
 fn a_leaf_comes_with_all_its_files() {

@@ -67,3 +67,20 @@ pub(crate) fn assert_same(a: &Path, b: &Path) {
 pub(crate) fn fresh() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
+
+/// Settings that leave few veins, which grow quickly.
+pub(crate) const FEW_VEINS: &[&str] = &[
+    "--set",
+    "veins.kill_distance_mm=4",
+    "--set",
+    "veins.source_spawn_distance_mm=5",
+    "--set",
+    "veins.vein_spawn_distance_mm=5",
+    "--set",
+    "veins.node_step_mm=1",
+];
+
+/// A command that makes small leaves with few veins.
+pub(crate) fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    [arguments, &["--size", "64"], FEW_VEINS].concat()
+}

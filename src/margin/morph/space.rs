@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::super::parametric::SideSpec;
 use super::super::{Landmark, LandmarkKind, Outline};
+use crate::geometry::alignment;
 
 /// A margin as a point of the common space.
 #[derive(Debug, Clone, PartialEq)]
@@ -307,25 +308,11 @@ fn side_marks(
         (angle(a) - angle(b)).abs()
     };
     // The own tips that answer the model's, in order, with the most likeness.
-    let (n, m) = (own_tips.len(), tips.len());
-    let gain = |i: usize, j: usize| 1.0 - apart(i, j) / SAME_LOBE_DEG;
-    let mut best = vec![vec![0.0_f64; m + 1]; n + 1];
-    for i in 1..=n {
-        for j in 1..=m {
-            let matched = best[i - 1][j - 1] + gain(i - 1, j - 1).max(-1.0);
-            best[i][j] = matched.max(best[i - 1][j]).max(best[i][j - 1]);
-        }
-    }
-    let mut ways: Vec<Option<f64>> = vec![None; m];
-    let (mut i, mut j) = (n, m);
-    while i > 0 && j > 0 {
-        if best[i][j] == best[i - 1][j] {
-            i -= 1;
-        } else if best[i][j] == best[i][j - 1] {
-            j -= 1;
-        } else {
-            (i, j) = (i - 1, j - 1);
-            ways[j] = Some(ring.ways[own_tips[i].vertex]);
+    let gain = |i: usize, j: usize| (1.0 - apart(i, j) / SAME_LOBE_DEG).max(-1.0);
+    let mut ways: Vec<Option<f64>> = vec![None; tips.len()];
+    for (i, answer) in alignment::in_order(own_tips.len(), tips.len(), gain).iter().enumerate() {
+        if let Some(j) = answer {
+            ways[*j] = Some(ring.ways[own_tips[i].vertex]);
         }
     }
     // The others by their veins, kept in order between those that are known.
@@ -336,7 +323,8 @@ fn side_marks(
         }
         let towards = model.points[tip.vertex] - tip.origin;
         let before = ways[..j].iter().rev().find_map(|way| *way).unwrap_or(low);
-        let (k, after) = (j..m).find_map(|k| known[k].map(|way| (k, way))).unwrap_or((m, high));
+        let next = (j..tips.len()).find_map(|k| known[k].map(|way| (k, way)));
+        let (k, after) = next.unwrap_or((tips.len(), high));
         let cast = ring.way_to(tip.origin, towards.normalize_or_zero());
         let room = (after - before) / (k - j + 1) as f64;
         let even = before + room;

@@ -6,6 +6,7 @@ use super::GuideSpec;
 use super::planter::{Planter, Vein};
 use super::secondary::Plan;
 use super::targets::Tip;
+use crate::geometry::alignment;
 
 /// The tooth that each of a row of secondaries, from base to apex, should end in: those that
 /// bring most of them into teeth with the least bending, in the order of the row.
@@ -44,25 +45,6 @@ pub(super) fn teeth_for(
         let bend = tips[j].at.distance(end) / reach;
         if bend <= 1.0 { 1.2 - bend + 0.6 * tips[j].height / tallest } else { f64::NEG_INFINITY }
     };
-    // best[i][j]: the most that the first i secondaries get from the first j teeth.
-    let mut best = vec![vec![0.0; tips.len() + 1]; plans.len() + 1];
-    for i in 1..=plans.len() {
-        for j in 1..=tips.len() {
-            let matched = best[i - 1][j - 1] + gain(i - 1, j - 1);
-            best[i][j] = matched.max(best[i - 1][j]).max(best[i][j - 1]);
-        }
-    }
-    let mut matched = none;
-    let (mut i, mut j) = (plans.len(), tips.len());
-    while i > 0 && j > 0 {
-        if best[i][j] == best[i - 1][j] {
-            i -= 1;
-        } else if best[i][j] == best[i][j - 1] {
-            j -= 1;
-        } else {
-            (i, j) = (i - 1, j - 1);
-            matched[i] = Some(tips[j]);
-        }
-    }
-    matched
+    let pairs = alignment::in_order(plans.len(), tips.len(), gain);
+    pairs.into_iter().map(|tooth| tooth.map(|j| tips[j])).collect()
 }

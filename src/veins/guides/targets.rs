@@ -77,16 +77,10 @@ pub(super) fn teeth(margin: &Margin, spacing: f64) -> Vec<Tip> {
 
 /// The teeth of the first order that the margin itself knows of, in the order of [`teeth`].
 fn known_teeth(margin: &Margin) -> Vec<Tip> {
-    let outline = margin.outline();
     let marks = margin.landmarks();
-    let at = |i: usize| outline[marks[i].vertex];
+    let at = |i: usize| margin.outline()[marks[i].vertex];
     let is_sinus = |mark: &Landmark| matches!(mark.kind, LandmarkKind::Sinus { order: 1 });
-    let mut ways = vec![0.0];
-    ways.extend(polygon::edges(outline).scan(0.0, |way, (a, b)| {
-        *way += a.distance(b);
-        Some(*way)
-    }));
-    let (apex, round) = (ways[margin.apex_index()], ways[outline.len()]);
+    let ways = Ways::new(margin);
     let teeth = (0..marks.len()).filter(|&i| marks[i].kind == LandmarkKind::Tooth { order: 1 });
     let mut tips: Vec<Tip> = teeth
         .map(|i| {
@@ -96,17 +90,41 @@ fn known_teeth(margin: &Margin) -> Vec<Tip> {
             let height = below.zip(above).map_or(1.0, |(below, above)| {
                 polygon::nearest_on_segment(below, above, at(i)).distance(at(i))
             });
-            let way = ways[marks[i].vertex];
-            let (side, along) = if marks[i].vertex <= margin.apex_index() {
-                (1.0, way / apex)
-            } else {
-                (-1.0, (round - way) / (round - apex))
-            };
-            Tip { at: at(i), along, height, side }
+            ways.tip(marks[i].vertex, height)
         })
         .collect();
     tips.sort_by(|a, b| (b.side, a.along).partial_cmp(&(a.side, b.along)).expect("finite"));
     tips
+}
+
+/// How far along the outline its vertices are.
+struct Ways<'a> {
+    margin: &'a Margin,
+    /// From the base on, and all the way round at last (mm).
+    ways: Vec<f64>,
+}
+
+impl<'a> Ways<'a> {
+    fn new(margin: &'a Margin) -> Self {
+        let mut ways = vec![0.0];
+        ways.extend(polygon::edges(margin.outline()).scan(0.0, |way, (a, b)| {
+            *way += a.distance(b);
+            Some(*way)
+        }));
+        Self { margin, ways }
+    }
+
+    fn tip(&self, vertex: usize, height: f64) -> Tip {
+        let outline = self.margin.outline();
+        let (way, apex) = (self.ways[vertex], self.ways[self.margin.apex_index()]);
+        let round = self.ways[outline.len()];
+        let (side, along) = if vertex <= self.margin.apex_index() {
+            (1.0, way / apex)
+        } else {
+            (-1.0, (round - way) / (round - apex))
+        };
+        Tip { at: outline[vertex], along, height, side }
+    }
 }
 
 fn tips_at(margin: &Margin, sigma: f64) -> Vec<Tip> {
@@ -156,36 +174,16 @@ pub(super) fn lobes(margin: &Margin) -> Vec<Tip> {
 /// to base on each side.
 fn known_lobes(margin: &Margin) -> Vec<Tip> {
     let near_apex = 0.02 * margin.length_mm();
+    let ways = Ways::new(margin);
     let mut tips: Vec<Tip> = margin
         .landmarks()
         .iter()
         .filter(|mark| matches!(mark.kind, LandmarkKind::LobeTip { .. }))
         .filter(|mark| margin.outline()[mark.vertex].distance(margin.apex()) > near_apex)
-        .map(|mark| tip_at(margin, mark.vertex, LOBE * margin.length_mm()))
+        .map(|mark| ways.tip(mark.vertex, LOBE * margin.length_mm()))
         .collect();
     tips.sort_by(|a, b| (b.side, b.along).partial_cmp(&(a.side, a.along)).expect("finite"));
     tips
-}
-
-/// A tip at a vertex of the outline.
-fn tip_at(margin: &Margin, vertex: usize, height: f64) -> Tip {
-    let outline = margin.outline();
-    let apex = outline.iter().position(|&p| p == margin.apex()).unwrap_or(0);
-    let way = |range: std::ops::RangeInclusive<usize>| {
-        let count = outline.len();
-        range
-            .clone()
-            .zip(range.skip(1))
-            .map(|(i, j)| outline[i % count].distance(outline[j % count]))
-            .sum::<f64>()
-    };
-    let (along, side) = if vertex <= apex {
-        (way(0..=vertex) / way(0..=apex).max(f64::MIN_POSITIVE), 1.0)
-    } else {
-        let end = outline.len();
-        (way(vertex..=end) / way(apex..=end).max(f64::MIN_POSITIVE), -1.0)
-    };
-    Tip { at: outline[vertex], along, height, side }
 }
 
 /// Peaks of a closed row of numbers that rise by `least` or more over the passes to higher ones, and

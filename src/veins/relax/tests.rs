@@ -13,6 +13,10 @@ fn relaxing(sweeps: u64) -> VeinSpec {
     VeinSpec { relaxation: sweeps, ..VeinSpec::default() }
 }
 
+fn stepping() -> VeinSpec {
+    VeinSpec { node_step_mm: 0.3, ..VeinSpec::default() }
+}
+
 /// A T: two ends opposite of each other and a stem, equally wide, with a node along each.
 fn tee() -> VeinGraph {
     let mut graph = VeinGraph::new();
@@ -29,7 +33,7 @@ fn tee() -> VeinGraph {
 #[test]
 fn equal_veins_meet_at_120_degrees() {
     let graph = tee();
-    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), 0.3);
+    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), &stepping());
     relaxation.margin = SegmentIndex::new(Vec::new());
     let positions = relaxation.run(400);
     let hub = positions[2];
@@ -47,7 +51,7 @@ fn a_wide_vein_holds_its_course() {
     let widths = [0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0];
     let mut widths = widths.to_vec();
     widths[2] = 0.1;
-    let positions = Relaxation::new(&graph, &widths, margin().lines(), 0.3).run(5);
+    let positions = Relaxation::new(&graph, &widths, margin().lines(), &stepping()).run(5);
     assert!(positions[2].distance(graph.positions()[2]) < 0.6, "{}", positions[2]);
 }
 

@@ -369,6 +369,6 @@ macro_rules! words {
 }
 
 pub(crate) use {
-    field_default, field_defaults, field_kind, field_outside, field_parameters, field_type, parameters,
-    words,
+    field_default, field_defaults, field_kind, field_outside, field_parameters, field_type,
+    parameters, words,
 };

@@ -41,8 +41,11 @@ fn stubs(graph: &VeinGraph, least: f64) -> Vec<bool> {
     let mut goes = vec![false; graph.len()];
     // The longer of two stubs at one node stays: it is looked at again without the other.
     let mut touched = vec![false; graph.len()];
-    let mut short: Vec<(f64, &Chain)> =
-        chains.iter().map(|chain| (length(chain), chain)).filter(|&(long, _)| long < least).collect();
+    let mut short: Vec<(f64, &Chain)> = chains
+        .iter()
+        .map(|chain| (length(chain), chain))
+        .filter(|&(long, _)| long < least)
+        .collect();
     short.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, chain) in short {
         let last = chain.nodes.len() - 1;

@@ -25,9 +25,6 @@ fn presets_keep_what_venation_promises_whatever_the_growth() {
             let mut spec = document.resolve(Seed(seed)).expect("it resolves");
             spec.growth.r#type = growth;
             spec.veins.spawn_rate = 40.0;
-            // Both draw edges out: beside junctions that move, and along veins that bow.
-            spec.veins.relaxation = 0;
-            spec.veins.sinuosity = 0.0;
             if growth == GrowthType::Marginal {
                 spec.growth.scale = 0.8;
             }

@@ -73,8 +73,7 @@ impl Relaxation {
         let step = spec.node_step_mm;
         let chains = Chains::of(graph);
         let positions = graph.positions().to_vec();
-        let pulls: Vec<f64> =
-            chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
+        let pulls: Vec<f64> = chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
         let mean_pull = pulls.iter().sum::<f64>() / pulls.len().max(1) as f64;
         let pressure = spec.areole_pressure * mean_pull;
         let faces = (pressure > 0.0).then(|| Faces::of(&chains, &positions));

@@ -148,7 +148,7 @@ impl Capsule {
 /// The share of a window of half-width `half`, at `distance` from the axis of a long stroke of
 /// radius `radius`, that the stroke fills. Strokes thinner than the window fade, not vanish.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn stroke_share(distance: f32, radius: f32, half: f32) -> f32 {
     let overlap = (distance + half).min(radius) - (distance - half).max(-radius);
     (overlap / (2.0 * half)).clamp(0.0, 1.0)

@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 
 use super::pigment::{Albedo, Amounts};
 use super::spectrum::{Spectrum, encoded};
+use super::strip::{LANES, Lane};
 
 /// Nodes on each axis.
 const NODES: [usize; 5] = [16, 8, 9, 8, 5];
@@ -59,15 +60,6 @@ fn held(back: f64, through: f64) -> [f64; 2] {
     [back / excess, through / excess]
 }
 
-/// Where amounts lie on the first four axes, in nodes.
-#[inline]
-fn places(pigments: [f32; 4], scale: [f32; 4]) -> [f32; 4] {
-    std::array::from_fn(|k| {
-        let place = pigments[k] / (pigments[k] + HALF[k] as f32) * scale[k];
-        place.clamp(0.0, (NODES[k] - 1) as f32 - 1e-3)
-    })
-}
-
 impl Lattice {
     fn new(albedo: Albedo) -> Self {
         let spectrum = Spectrum::new();
@@ -99,37 +91,55 @@ impl Lattice {
         Self { nodes: (0..count).map(node).collect(), scale: scale.map(|v| v as f32) }
     }
 
-    /// Red, green, blue sent back, then let through, as sRGB numbers, of a leaf with so much
+    /// Red, green, blue sent back, then let through, as sRGB numbers, of leaves with so much
     /// chlorophyll, carotenoid, anthocyanin, brown and structure.
-    #[inline]
-    pub(super) fn at(&self, [a, b, c, d, structure]: [f32; 5]) -> [f32; 8] {
+    #[inline(always)]
+    pub(super) fn read(&self, amounts: &[Lane; 5], colours: &mut [Node; LANES]) {
         const PER_STRUCTURE: f32 = (NODES[4] - 1) as f32 / (STRUCTURE[1] - STRUCTURE[0]) as f32;
-        let [a, b, c, d] = places([a, b, c, d], self.scale);
-        let e = (structure - STRUCTURE[0] as f32) * PER_STRUCTURE;
-        let g = [a, b, c, d, e.clamp(0.0, (NODES[4] - 1) as f32 - 1e-3)];
-        let floor = g.map(|v| v as usize);
-        let mut index = (0..5).map(|k| floor[k] * STRIDES[k]).sum::<usize>();
-        // Positive floats sort as their bits do; the last three bits carry the axis.
-        let mut keys: [u32; 5] =
-            std::array::from_fn(|k| ((g[k] - floor[k] as f32).to_bits() & !7) | k as u32);
-        for (i, j) in [(0, 3), (1, 4), (0, 2), (1, 3), (0, 1), (2, 4), (1, 2), (3, 4), (2, 3)] {
-            let (high, low) = (keys[i].max(keys[j]), keys[i].min(keys[j]));
-            (keys[i], keys[j]) = (high, low);
+        let mut first = [0_i32; LANES];
+        // How far past its node a place lies on each axis, from far to near. Positive floats sort as
+        // their bits do; the last three bits carry the axis.
+        let mut keys = [[0_u32; LANES]; 5];
+        for i in 0..LANES {
+            let place: [f32; 5] = std::array::from_fn(|k| {
+                let amount = amounts[k][i];
+                let place = if k < 4 {
+                    amount / (amount + HALF[k] as f32) * self.scale[k]
+                } else {
+                    (amount - STRUCTURE[0] as f32) * PER_STRUCTURE
+                };
+                place.max(0.0).min((NODES[k] - 1) as f32 - 1e-3)
+            });
+            let node = place.map(|v| v as i32);
+            first[i] = (0..5).map(|k| node[k] * STRIDES[k] as i32).sum();
+            let mut key: [u32; 5] =
+                std::array::from_fn(|k| ((place[k] - node[k] as f32).to_bits() & !7) | k as u32);
+            for (a, b) in [(0, 3), (1, 4), (0, 2), (1, 3), (0, 1), (2, 4), (1, 2), (3, 4), (2, 3)] {
+                (key[a], key[b]) = (key[a].max(key[b]), key[a].min(key[b]));
+            }
+            for (keys, key) in keys.iter_mut().zip(key) {
+                keys[i] = key;
+            }
         }
-        let mut before = 1.0;
-        let mut sum = [0.0; 8];
-        for key in keys {
-            let share = f32::from_bits(key & !7);
-            add(&mut sum, &self.nodes[index], before - share);
-            index += STRIDES[(key & 7) as usize];
-            before = share;
+        for i in 0..LANES {
+            let (mut index, mut before, mut sum) = (first[i] as usize, 1.0, [0.0; 8]);
+            for key in &keys {
+                let share = f32::from_bits(key[i] & !7);
+                add(&mut sum, &self.nodes[index], before - share);
+                index += AXIS_STRIDES[(key[i] & 7) as usize];
+                before = share;
+            }
+            add(&mut sum, &self.nodes[index], before);
+            colours[i] = sum;
         }
-        add(&mut sum, &self.nodes[index], before);
-        sum
     }
 }
 
-#[inline]
+/// [`STRIDES`], and as many more as make every three bits name one.
+const AXIS_STRIDES: [usize; 8] =
+    [STRIDES[0], STRIDES[1], STRIDES[2], STRIDES[3], STRIDES[4], 0, 0, 0];
+
+#[inline(always)]
 fn add(sum: &mut Node, node: &Node, weight: f32) {
     for (sum, value) in sum.iter_mut().zip(node) {
         *sum += value * weight;
@@ -141,6 +151,14 @@ mod tests {
     use super::super::spectrum::decoded;
     use super::*;
     use crate::seed::{Seed, Stage};
+
+    impl Lattice {
+        fn at(&self, amounts: [f32; 5]) -> Node {
+            let mut colours = [[0.0; 8]; LANES];
+            self.read(&amounts.map(|amount| [amount; LANES]), &mut colours);
+            colours[LANES - 1]
+        }
+    }
 
     #[test]
     fn between_the_nodes_the_lattice_is_the_model_to_two_steps_of_eight_bits() {

@@ -8,6 +8,7 @@
 //! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
 
 pub mod atlas;
+mod brush;
 pub mod damage;
 mod deep;
 mod dilation;
@@ -28,7 +29,7 @@ pub mod relief;
 mod scene;
 mod side;
 pub mod spectrum;
-mod texel;
+mod strip;
 mod tissue;
 
 use crate::margin::Margin;

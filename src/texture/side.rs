@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::dilation::Empty;
 use super::map::{MapKind, MapSet, Outside};
 use crate::raster::Grid;
 
@@ -142,15 +143,16 @@ impl SideMaps {
         }
     }
 
-    /// Fills the texels outside the leaf from the texels `source` names (row by row from the top),
-    /// each plane after its map's [`Outside`].
-    pub(super) fn spread(&mut self, source: impl Fn(usize) -> Option<usize> + Sync) {
-        fill(&mut self.base_colour, &source, |texel, [r, g, b, _]| *texel = [r, g, b, 0]);
-        fill(&mut self.height, &source, |texel, source| *texel = source);
-        fill(&mut self.roughness, &source, |texel, source| *texel = source);
-        fill(&mut self.transmission, &source, |texel, source| *texel = source);
-        fill(&mut self.translucency, &source, |texel, source| *texel = source);
-        fill(&mut self.bump, &source, |texel, source| *texel = source);
+    /// Fills the texels outside the leaf, each plane after its map's [`Outside`].
+    pub(super) fn spread(&mut self, empty: &Empty) {
+        empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {
+            texels.fill([r, g, b, 0]);
+        });
+        empty.fill(self.height.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.roughness.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.bump.values_mut(), |texels, value| texels.fill(value));
         debug_assert!(MapKind::Thickness.outside() == Outside::Zero, "left as it is empty");
     }
 
@@ -181,17 +183,4 @@ fn bytes<T: Sync, const N: usize>(
     bytes: impl Fn(&T) -> [u8; N] + Sync + Send,
 ) -> Vec<u8> {
     plane.values().par_iter().map(bytes).collect::<Vec<_>>().into_flattened()
-}
-
-fn fill<T: Copy>(
-    plane: &mut Grid<T>,
-    source: impl Fn(usize) -> Option<usize>,
-    put: impl Fn(&mut T, T),
-) {
-    for i in 0..plane.values().len() {
-        if let Some(source) = source(i) {
-            let source = plane.values()[source];
-            put(&mut plane.values_mut()[i], source);
-        }
-    }
 }

@@ -12,7 +12,7 @@ use super::{Albedo, ColourSpec, ColourType, Face, Hsv, SPREADING, SideColour, Ti
 use crate::raster::color::{Tint, byte};
 use crate::texture::petiole::StalkAt;
 use crate::texture::spectrum::{decoded, encoded};
-use crate::texture::texel::Shade;
+use crate::texture::brush::Shade;
 use crate::texture::tissue::smooth;
 
 /// The colours of one side, ready to mix.

@@ -10,7 +10,7 @@
 pub mod atlas;
 mod brush;
 pub mod damage;
-mod deep;
+pub mod deep;
 mod dilation;
 mod enhance;
 mod fields;
@@ -127,7 +127,8 @@ pub fn paint(
     let per_mm = scene.frame().pixels_per_mm(scene.size) as f32;
     let per_texel = scene.height_range_mm() as f32 / 65535.0 * per_mm;
     for side in [&mut front, &mut back] {
-        if side.has(MapKind::Normal) {
+        if paint.maps.has(MapKind::Normal) {
+            side.normal = Grid::filled(scene.size, scene.size, [0; 3]);
             normals::fill(side, per_texel);
         }
         if side.has(MapKind::AmbientOcclusion) {

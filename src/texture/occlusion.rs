@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::side::SideMaps;
 use crate::raster::Grid;
+use crate::raster::color::{byte, word};
 
 /// Where the horizon is looked for (mm): the flank of a vein, and the width of an areole.
 const REACH_MM: [f32; 2] = [0.12, 0.45];
@@ -27,12 +28,34 @@ const EMPHASIS: f32 = 1.6;
 /// height is `per_texel` texels high, and `per_mm` texels make a millimetre.
 pub(super) fn fill(side: &mut SideMaps, per_texel: f32, per_mm: f32) {
     let size = side.size();
-    let SideMaps { base_colour, height, occlusion, .. } = side;
     let steps = REACH_MM.map(|mm| ((mm * per_mm + 0.5) as usize).clamp(1, size.max(2) - 1));
-    let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [u8])| {
+    let SideMaps { base_colour, height, occlusion, deep, .. } = side;
+    fill_plane(occlusion, (base_colour, height), steps, per_texel, byte);
+    if let Some(deep) = deep {
+        fill_plane(&mut deep.occlusion, (base_colour, height), steps, per_texel, word);
+    }
+}
+
+/// Fills a plane whose values `of` shares are, where the leaf is.
+fn fill_plane<T: Copy + Send>(
+    occlusion: &mut Grid<T>,
+    (base_colour, height): (&Grid<[u8; 4]>, &Grid<u16>),
+    steps: [usize; 2],
+    per_texel: f32,
+    of: fn(f32) -> T,
+) {
+    let size = height.width();
+    let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [T])| {
         let colours = base_colour.row(y);
-        let work = Row { y, colours, height, steps, per_texel, sum, occlusion: row };
+        let Some(first) = colours.iter().position(covered) else { return };
+        let end = colours.iter().rposition(covered).expect("there is a first") + 1;
+        let work = Row { y, columns: first..end, height, steps, per_texel, sum };
         pulp::Arch::new().dispatch(work);
+        for x in first..end {
+            if covered(&colours[x]) {
+                row[x] = of(1.0 - sum[x] / DIRECTIONS.len() as f32);
+            }
+        }
     };
     occlusion
         .values_mut()
@@ -41,15 +64,18 @@ pub(super) fn fill(side: &mut SideMaps, per_texel: f32, per_mm: f32) {
         .for_each_init(|| vec![0.0; size], fill_row);
 }
 
-/// A row to be filled.
+fn covered(texel: &[u8; 4]) -> bool {
+    texel[3] > 0
+}
+
+/// Columns of a row of which is found how much light the relief hides, in all directions.
 struct Row<'a> {
     y: usize,
-    colours: &'a [[u8; 4]],
+    columns: Range<usize>,
     height: &'a Grid<u16>,
     steps: [usize; 2],
     per_texel: f32,
     sum: &'a mut [f32],
-    occlusion: &'a mut [u8],
 }
 
 impl pulp::WithSimd for Row<'_> {
@@ -57,11 +83,8 @@ impl pulp::WithSimd for Row<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { y, colours, height, steps, per_texel, sum, occlusion } = self;
-        let covered = |texel: &[u8; 4]| texel[3] > 0;
-        let Some(first) = colours.iter().position(covered) else { return };
-        let end = colours.iter().rposition(covered).expect("there is a first") + 1;
-        let size = occlusion.len();
+        let Self { y, columns, height, steps, per_texel, sum } = self;
+        let (first, end, size) = (columns.start, columns.end, height.width());
         sum[first..end].fill(0.0);
         for (dx, dy) in DIRECTIONS {
             let length = if dx * dy == 0 { 1.0 } else { std::f32::consts::SQRT_2 };
@@ -103,10 +126,6 @@ impl pulp::WithSimd for Row<'_> {
                 _ => {}
             }
         }
-        for x in first..end {
-            let open = (255.5 - 255.0 / DIRECTIONS.len() as f32 * sum[x]) as u8;
-            occlusion[x] = if covered(&colours[x]) { open } else { u8::MAX };
-        }
     }
 }
 
@@ -117,7 +136,10 @@ fn add_horizon(sum: &mut [f32], own: &[u16], others: [&[u16]; 2], scales: [f32; 
     let (own, near, far) = (&own[..n], &others[0][..n], &others[1][..n]);
     for i in 0..n {
         let rise = |other: u16| (i32::from(other) - i32::from(own[i])) as f32;
-        let slope = (rise(near[i]) * scales[0]).max(rise(far[i]) * scales[1]).max(0.0);
+        let (near, far) = (rise(near[i]) * scales[0], rise(far[i]) * scales[1]);
+        // Not `max`, which asks for what is not a number.
+        let higher = if near > far { near } else { far };
+        let slope = if higher > 0.0 { higher } else { 0.0 };
         let slope2 = slope * slope;
         sum[i] += slope2 / (1.0 + slope2);
     }

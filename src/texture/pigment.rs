@@ -17,7 +17,7 @@ use super::damage::Injury;
 use super::fields::VeinAt;
 use super::guide::Place;
 use super::petiole::StalkAt;
-use super::strip::{LANES, Strip};
+use super::strip::Strip;
 use super::brush::{Shade, Shades};
 
 use crate::parameter::{parameters, words};
@@ -219,25 +219,25 @@ pub(super) enum Pigments {
     /// By amounts.
     Amounts(Box<amounts::Mixer>),
     /// As chosen, front and back.
-    Chosen(Box<[hsv::Chosen; 2]>),
+    Chosen(Box<hsv::Leaf>),
 }
 
 impl Pigments {
-    /// The petiole colours the midrib within `petiole_reach` of the base (mm).
+    /// The petiole colours the midrib within `petiole_reach` of the base (mm); `hurt` leaves have wounds.
     pub(super) fn new(
         spec: &ColourSpec,
         state: &StateSpec,
         petiole: &Hsv,
         petiole_reach: f32,
+        hurt: bool,
     ) -> Self {
         match spec.model {
             ColourModel::Pigments => {
                 Self::Amounts(Box::new(amounts::Mixer::new(spec, state, petiole, petiole_reach)))
             }
-            ColourModel::Hsv => Self::Chosen(Box::new(
-                [(&spec.front, FRONT), (&spec.back, BACK)]
-                    .map(|(side, face)| hsv::Chosen::new(spec, side, face, petiole, petiole_reach)),
-            )),
+            ColourModel::Hsv => {
+                Self::Chosen(Box::new(hsv::Leaf::new(spec, state, petiole, petiole_reach, hurt)))
+            }
         }
     }
 
@@ -246,13 +246,7 @@ impl Pigments {
     pub(super) fn paint(&self, strip: &Strip, shades: &mut [Shades; 2]) {
         match self {
             Self::Amounts(mixer) => mixer.paint(strip, shades),
-            Self::Chosen(sides) => {
-                for (shades, side) in shades.iter_mut().zip(&**sides) {
-                    for i in 0..LANES {
-                        shades[i] = side.blade(&strip.tissue(i)).array();
-                    }
-                }
-            }
+            Self::Chosen(leaf) => leaf.paint(strip, shades),
         }
     }
 
@@ -262,9 +256,7 @@ impl Pigments {
     pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> [Shade; 2] {
         match self {
             Self::Amounts(mixer) => mixer.stalk(stalk, length, grain),
-            Self::Chosen(sides) => {
-                std::array::from_fn(|side| sides[side].stalk(stalk, length, grain))
-            }
+            Self::Chosen(leaf) => leaf.stalk(stalk, length, grain),
         }
     }
 }

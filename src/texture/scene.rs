@@ -11,9 +11,10 @@ use rayon::prelude::*;
 use super::Paint;
 use super::brush::Painted;
 use super::damage::Wounds;
+use super::deep::Deep;
 use super::fields::{Strokes, VeinRows, midrib};
 use super::guide::{Guide, Lattice, Reach};
-use super::map::MapSet;
+use super::map::{MapKind, MapSet};
 use super::optics::Optics;
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::{Course, Pigments};
@@ -24,7 +25,7 @@ use super::tissue;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 use crate::raster::Grid;
-use crate::raster::color::byte;
+use crate::raster::color::{byte, word};
 use crate::raster::coverage::{Capsule, polygon_rows, stroke_share};
 use crate::seed::{Seed, Stage};
 use crate::units::TextureFrame;
@@ -76,6 +77,11 @@ struct SideRows<'a> {
     thickness: &'a mut [u16],
     vein_mask: &'a mut [u8],
     vein_order: &'a mut [u8],
+    deep_colour: &'a mut [[u16; 4]],
+    deep_roughness: &'a mut [u16],
+    deep_transmission: &'a mut [u16],
+    deep_translucency: &'a mut [[u16; 3]],
+    deep_vein_mask: &'a mut [u16],
 }
 
 impl Scene {
@@ -145,6 +151,7 @@ impl Scene {
                 paint.state,
                 &paint.petiole.colour,
                 petiole_reach,
+                !paint.damage.is_none(),
             ),
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
@@ -181,7 +188,9 @@ impl Scene {
     /// Both sides, empty where the leaf is not, heights without their normals; the back mirrored.
     pub(super) fn paint(&self) -> [SideMaps; 2] {
         let size = self.size;
-        let mut sides = [SideMaps::empty(size, self.maps), SideMaps::empty(size, self.maps)];
+        // Normals are made from the heights at the end.
+        let maps = self.maps.without(MapKind::Normal);
+        let mut sides = [SideMaps::empty(size, maps), SideMaps::empty(size, maps)];
         let [front, back] = &mut sides;
         let bands: Vec<_> =
             bands(front, self.band * size).zip(bands(back, self.band * size)).collect();
@@ -323,11 +332,16 @@ impl SideRows<'_> {
         fn lay<T>(plane: &mut [T], side: usize, texels: Range<usize>, value: impl Fn(usize) -> T) {
             // A plane that is not kept has no texels.
             let Some(texels) = plane.get_mut(texels) else { return };
-            let n = texels.len().min(LANES);
+            let n = texels.len();
+            // Written as loops: what iterators do out of line would be done without vectors.
             if side == 0 {
-                texels.iter_mut().zip(0..n).for_each(|(texel, i)| *texel = value(i));
+                for i in 0..n.min(LANES) {
+                    texels[i] = value(i);
+                }
             } else {
-                texels.iter_mut().rev().zip(0..n).for_each(|(texel, i)| *texel = value(i));
+                for i in 0..n.min(LANES) {
+                    texels[n - 1 - i] = value(i);
+                }
             }
         }
         let per_height = 65535.0 / (2.0 * scene.relief.bound());
@@ -351,6 +365,17 @@ impl SideRows<'_> {
         });
         lay(self.vein_mask, side, all(), |i| byte(strip.vein_mask(i)));
         lay(self.vein_order, side, all(), |i| strip.vein_order(i));
+        lay(self.deep_colour, side, all(), |i| {
+            let [r, g, b, ..] = shades[i].map(word);
+            [r, g, b, word(painted.alpha[i])]
+        });
+        lay(self.deep_roughness, side, all(), |i| word(painted.roughness[side][i]));
+        lay(self.deep_transmission, side, all(), |i| word(painted.transmission[side][i]));
+        lay(self.deep_translucency, side, all(), |i| {
+            let [_, _, _, r, g, b, ..] = shades[i].map(word);
+            [r, g, b]
+        });
+        lay(self.deep_vein_mask, side, all(), |i| word(strip.vein_mask(i)));
     }
 }
 
@@ -380,7 +405,17 @@ fn bands(side: &mut SideMaps, band: usize) -> impl Iterator<Item = SideRows<'_>>
     let mut thickness = chunks(&mut side.thickness, band);
     let mut vein_mask = chunks(&mut side.vein_mask, band);
     let mut vein_order = chunks(&mut side.vein_order, band);
+    let mut deep = side.deep.as_deref_mut().map(|deep| {
+        let Deep { base_colour, roughness, transmission, translucency, vein_mask, .. } = deep;
+        let roughness = chunks(roughness, band).zip(chunks(transmission, band));
+        let others = chunks(translucency, band).zip(chunks(vein_mask, band));
+        chunks(base_colour, band).zip(roughness.zip(others))
+    });
     side.base_colour.values_mut().chunks_mut(band).map_while(move |colour| {
+        let deep = deep.as_mut().and_then(Iterator::next);
+        let (deep_colour, ((deep_roughness, deep_transmission), others)) =
+            deep.unwrap_or_default();
+        let (deep_translucency, deep_vein_mask) = others;
         Some(SideRows {
             colour,
             height: height.next()?,
@@ -391,6 +426,11 @@ fn bands(side: &mut SideMaps, band: usize) -> impl Iterator<Item = SideRows<'_>>
             thickness: thickness.next()?,
             vein_mask: vein_mask.next()?,
             vein_order: vein_order.next()?,
+            deep_colour,
+            deep_roughness,
+            deep_transmission,
+            deep_translucency,
+            deep_vein_mask,
         })
     })
 }

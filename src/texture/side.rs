@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::deep::Deep;
 use super::dilation::Empty;
 use super::map::{MapKind, MapSet, Outside};
 use crate::raster::Grid;
@@ -43,6 +44,8 @@ pub struct SideMaps {
     pub preview: Grid<[u8; 3]>,
     /// Six steps of enhancement, three in a row.
     pub enhancement: Grid<[u8; 3]>,
+    /// Colours and shares with 16 bits a channel, where they were asked for.
+    pub deep: Option<Box<Deep>>,
 }
 
 impl SideMaps {
@@ -68,6 +71,7 @@ impl SideMaps {
             // Made from the others at the end.
             preview: Grid::filled(0, 0, [0; 3]),
             enhancement: Grid::filled(0, 0, [0; 3]),
+            deep: Deep::empty(size, maps),
         }
     }
 
@@ -153,6 +157,9 @@ impl SideMaps {
         empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
         empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
         empty.fill(self.bump.values_mut(), |texels, value| texels.fill(value));
+        if let Some(deep) = &mut self.deep {
+            deep.spread(empty);
+        }
         debug_assert!(MapKind::Thickness.outside() == Outside::Zero, "left as it is empty");
     }
 

@@ -139,6 +139,7 @@ fn textures(margin: &Margin) -> TextureSet {
         bump: grid(|i| pixel(i, salt + 5)),
         preview: grid(|i| [pixel(i, salt), 9, 9]),
         enhancement: grid(|i| [9, pixel(i, salt), 9]),
+        deep: None,
     };
     let (front, back) = (side(1), side(2));
     TextureSet {

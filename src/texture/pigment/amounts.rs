@@ -58,6 +58,8 @@ parameters! {
         back_bloom: number(0.12, 0.0..=1.0, ""),
         /// Brown of the lower side: the rusty felt of some leaves.
         back_brown: number(0.0, 0.0..=3.0, ""),
+        /// Anthocyanin of the lower side's felt: it makes brown rusty.
+        back_anthocyanin_ug_cm2: number(0.0, 0.0..=60.0, "µg/cm²"),
         /// Bloom of the upper side.
         front_bloom: number(0.0, 0.0..=1.0, ""),
         /// Anthocyanin of a leaf that has just unfolded.
@@ -127,12 +129,15 @@ pub(in crate::texture) struct Mixer {
     back_structure: f32,
     back_bloom: f32,
     back_brown: f32,
+    back_red: f32,
     front_bloom: f32,
     /// Chlorophyll's colour, and the other pigments, of a leaf this young, as shares.
     young: [f32; 2],
     flush: f32,
     seasons: Vec<Turned>,
     summer: bool,
+    /// Whether neither sickness nor wounds count.
+    sound: bool,
     petiole: Tint,
     petiole_reach: f32,
 }
@@ -168,14 +173,21 @@ impl Mixer {
             back_structure: pigments.back_structure as f32,
             back_bloom: pigments.back_bloom as f32,
             back_brown: pigments.back_brown as f32,
+            back_red: pigments.back_anthocyanin_ug_cm2 as f32,
             front_bloom: pigments.front_bloom as f32,
             young: [1.0 - 0.33 * youth, 1.0 - 0.5 * youth],
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
             summer: state.season == 0.0,
+            sound: false,
             petiole: petiole.towards(dead, dry),
             petiole_reach,
         }
+    }
+
+    /// The same leaf, as if it were well and nothing had been done to it.
+    pub(super) fn sound(self) -> Self {
+        Self { sound: true, ..self }
     }
 
     /// What is seen of both sides of the blade, and through them.
@@ -185,7 +197,10 @@ impl Mixer {
         let (mut above, mut below) = ([[0.0; LANES]; 5], [[0.0; LANES]; 5]);
         let mut bloom = [0.0; LANES];
         for i in 0..LANES {
-            let tissue = strip.tissue(i);
+            let mut tissue = strip.tissue(i);
+            if self.sound {
+                (tissue.condition, tissue.injury) = Default::default();
+            }
             let turned = Turned::of(std::array::from_fn(|k| turned[k][i]));
             let lamina = self.lamina(&tissue, &turned);
             let vein = self.vein(&tissue, &lamina);
@@ -236,7 +251,7 @@ impl Mixer {
     fn behind(&self, mut mix: Mix) -> Mix {
         mix[0] *= self.back_chlorophyll;
         mix[1] *= 0.5 + 0.5 * self.back_chlorophyll;
-        mix[2] *= 0.25 + 0.5 * self.back_chlorophyll;
+        mix[2] = mix[2] * (0.25 + 0.5 * self.back_chlorophyll) + self.back_red;
         mix[3] = 0.85 * mix[3] + self.back_brown;
         mix[4] += self.back_structure;
         mix

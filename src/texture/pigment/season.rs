@@ -27,6 +27,9 @@ parameters! {
     pub struct SenescenceSpec {
         /// Anthocyanin made in autumn: 0 for yellow leaves, 5 orange, 15 and more red.
         anthocyanin_ug_cm2: number(1.0, 0.0..=60.0, "µg/cm²"),
+        /// Share of the green still there in full colour: 0.3 for leaves that fall dull green, 0.8 for
+        /// evergreen ones, which turn only when they die.
+        chlorophyll_kept: number(0.0, 0.0..=1.0, ""),
         /// Share of the carotenoid still there in full colour.
         carotenoid_kept: number(0.8, 0.0..=1.0, ""),
         /// Brown at the end.
@@ -174,16 +177,17 @@ impl Turned {
     #[inline]
     pub(super) fn at(s: f32, spec: &SenescenceSpec) -> Self {
         let end = smooth(0.56, 1.0, s);
-        let kept = spec.carotenoid_kept as f32;
+        let (green, kept) = (spec.chlorophyll_kept as f32, spec.carotenoid_kept as f32);
+        // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
+        let left = 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0));
         Self {
-            // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
-            chlorophyll: 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0)),
+            chlorophyll: left + green * (1.0 - left) * (1.0 - end),
             carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.45 * end),
             anthocyanin: spec.anthocyanin_ug_cm2 as f32
                 * smooth(0.08, 0.62, s)
                 * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
-            structure: 0.25 * smooth(0.15, 0.6, s) + 0.3 * end,
+            structure: 0.45 * smooth(0.1, 0.6, s) + 0.1 * end,
         }
     }
 }

@@ -70,7 +70,8 @@ pub fn encode_leaf(leaf: &LeafFiles<'_>) -> Vec<(String, Vec<u8>)> {
         })
         .collect();
     let (mut files, records): (Vec<_>, Vec<_>) = encoded.into_iter().unzip();
-    files.push((MANIFEST_FILE.to_owned(), leaf.manifest(records, unreached).to_json().into_bytes()));
+    files
+        .push((MANIFEST_FILE.to_owned(), leaf.manifest(records, unreached).to_json().into_bytes()));
     files
 }
 

@@ -155,7 +155,8 @@ mod tests {
         let left = remaining(&whole, &rings).expect("a hurt blade");
         let at = left.graph().positions();
         assert!(at.iter().all(|p| !(p.x > 3.0 + 1e-6 && p.x < 5.0 - 1e-6 && p.y == 4.0)), "{at:?}");
-        let mut ends: Vec<f64> = at.iter().map(|p| p.x).filter(|x| (2.9..5.1).contains(x)).collect();
+        let mut ends: Vec<f64> =
+            at.iter().map(|p| p.x).filter(|x| (2.9..5.1).contains(x)).collect();
         ends.sort_by(f64::total_cmp);
         assert!((ends[0] - 3.0).abs() < 1e-6 && (ends[1] - 5.0).abs() < 1e-6, "{ends:?}");
         let length: f64 =

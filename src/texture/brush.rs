@@ -3,7 +3,7 @@
 use super::map::{MapKind, MapSet};
 use super::optics::transmitted_share;
 use super::scene::Scene;
-use super::strip::{LANES, Lane, Strip};
+use super::strip::{LANES, LEAST_SEEN, Lane, Strip};
 
 /// Light that comes back from a place and light that goes through it, as sRGB numbers 0–1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,7 +94,8 @@ impl Painted {
         }
         if maps.has(MapKind::Thickness) {
             for i in 0..LANES {
-                self.thickness[i] = scene.relief.thickness(&strip.ground(i)) * strip.blade[i];
+                let blade = if self.alpha[i] < LEAST_SEEN { 0.0 } else { strip.blade[i] };
+                self.thickness[i] = scene.relief.thickness(&strip.ground(i)) * blade;
             }
         }
         if strip.stalked {

@@ -41,8 +41,7 @@ impl Empty {
     fn of(side: &SideMaps) -> Self {
         let size = side.size();
         let colours = &side.base_colour;
-        let nearest =
-            NearestByRows::new(size, size, |i| colours.values()[i][3] == u8::MAX);
+        let nearest = NearestByRows::new(size, size, |i| colours.values()[i][3] == u8::MAX);
         let of_row = |envelope: &mut Envelope, y: usize| {
             let row = colours.row(y);
             let mut runs = Vec::new();

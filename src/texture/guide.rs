@@ -94,14 +94,12 @@ impl Guide {
         let major: Vec<_> = vein_lines(venation, |order| order <= 2);
         let margin_cells = (frame.side_mm / side as f64 * 3.0) as f32;
         let edge = lattice.signed_distances(&edges, &outline, margin_cells);
-        let [major, veins] = [&major, &veins]
-            .map(|lines| lattice.distances(lines, |i| edge[i] > -margin_cells));
+        let [major, veins] =
+            [&major, &veins].map(|lines| lattice.distances(lines, |i| edge[i] > -margin_cells));
         let from_veins = lattice.vein_weights(venation, reach.vein_spread);
         let speckle = lattice.speckle_weights(reach.speckles, reach.speckle_mm);
         let mut nodes = vec![[0.0; 8]; side * side];
-        let noises = || {
-            [0, 1, 2].map(|k| noise::FractalRow::new(3 - k, seed ^ (k + 1)))
-        };
+        let noises = || [0, 1, 2].map(|k| noise::FractalRow::new(3 - k, seed ^ (k + 1)));
         let fill = |noises: &mut [noise::FractalRow; 3], (y, row): (usize, &mut [[f32; 8]])| {
             let inside = |x: &usize| edge[y * side + x] > -margin_cells;
             let (first, last) = ((0..side).find(inside), (0..side).rev().find(inside));

@@ -113,7 +113,8 @@ impl pulp::WithSimd for Row<'_> {
                     };
                     one(near.start..far.start.max(near.start), sum);
                     one(far.end.min(near.end)..near.end, sum);
-                    let others = [part(near_line, near_shift, &far), part(far_line, far_shift, &far)];
+                    let others =
+                        [part(near_line, near_shift, &far), part(far_line, far_shift, &far)];
                     let own = &height.row(y)[far.clone()];
                     add_horizon(&mut sum[far], own, others, scales);
                 }

@@ -13,12 +13,12 @@ pub use amounts::{Amounts, PigmentSpec};
 pub(super) use season::{Condition, Course};
 pub use season::{SenescenceSpec, StateSpec};
 
+use super::brush::{Shade, Shades};
 use super::damage::Injury;
 use super::fields::VeinAt;
 use super::guide::Place;
 use super::petiole::StalkAt;
 use super::strip::Strip;
-use super::brush::{Shade, Shades};
 
 use crate::parameter::{parameters, words};
 use crate::raster::color::Tint;

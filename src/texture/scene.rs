@@ -360,9 +360,7 @@ impl SideRows<'_> {
             let [_, _, _, r, g, b, ..] = shades[i].map(byte);
             [r, g, b]
         });
-        lay(self.thickness, side, all(), |i| {
-            (painted.thickness[i] * per_thickness + 0.5) as u16
-        });
+        lay(self.thickness, side, all(), |i| (painted.thickness[i] * per_thickness + 0.5) as u16);
         lay(self.vein_mask, side, all(), |i| byte(strip.vein_mask(i)));
         lay(self.vein_order, side, all(), |i| strip.vein_order(i));
         lay(self.deep_colour, side, all(), |i| {
@@ -413,8 +411,7 @@ fn bands(side: &mut SideMaps, band: usize) -> impl Iterator<Item = SideRows<'_>>
     });
     side.base_colour.values_mut().chunks_mut(band).map_while(move |colour| {
         let deep = deep.as_mut().and_then(Iterator::next);
-        let (deep_colour, ((deep_roughness, deep_transmission), others)) =
-            deep.unwrap_or_default();
+        let (deep_colour, ((deep_roughness, deep_transmission), others)) = deep.unwrap_or_default();
         let (deep_translucency, deep_vein_mask) = others;
         Some(SideRows {
             colour,

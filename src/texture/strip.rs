@@ -27,6 +27,9 @@ const FIBRE_STRETCH: f32 = 0.08;
 /// Further than this outside a skeletonised area (mm) nothing of it is seen.
 const FAR_OUTSIDE_MM: f32 = -3.0;
 
+/// What covers less of a texel is not there in 8 bits.
+pub(super) const LEAST_SEEN: f32 = 0.5 / 255.0;
+
 /// The net is bent by this much of the middle and of the fine noise (mm), along and across.
 const BENT_MM: [[f32; 2]; 2] = [[0.5, 0.25], [-0.4, 0.45]];
 
@@ -315,10 +318,10 @@ impl Strip {
         Condition { season, chlorosis, death }.dryness().max(self.injured[0][i])
     }
 
-    /// How much of a texel is vein.
+    /// How much of a texel is vein; none where nothing of the leaf is seen.
     #[inline(always)]
     pub(super) fn vein_mask(&self, i: usize) -> f32 {
-        self.vein.cover[i] * self.blade[i]
+        self.vein.cover[i] * if self.alpha(i) < LEAST_SEEN { 0.0 } else { self.blade[i] }
     }
 
     /// The order of the vein, 0 where there is none.

@@ -5,6 +5,7 @@ mod card;
 mod gltf;
 mod pictures;
 mod profiles;
+mod three;
 mod usda;
 mod vectors;
 mod write;

@@ -7,14 +7,12 @@
 
 use super::season::Turned;
 use super::shade;
-use super::{
-    BACK, ColourSpec, FRONT, Hsv, SPREADING, SenescenceSpec, StateSpec, Tissue,
-};
+use super::{BACK, ColourSpec, FRONT, Hsv, SPREADING, SenescenceSpec, StateSpec, Tissue};
 use crate::parameter::parameters;
 use crate::raster::color::Tint;
+use crate::texture::brush::{Shade, Shades};
 use crate::texture::lattice::{self, Lattice};
 use crate::texture::petiole::StalkAt;
-use crate::texture::brush::{Shade, Shades};
 use crate::texture::strip::{LANES, Lane, Strip};
 use crate::texture::tissue::smooth;
 
@@ -160,9 +158,11 @@ impl Mixer {
         Self {
             lattice: lattice::of(spec.albedo),
             chosen: SPREADING.map(|r#type| f32::from(u8::from(r#type == spec.r#type))),
-            faint: SPREADING.map(|r#type| {
-                if r#type == spec.r#type { 0.0 } else { spec.undertone as f32 }
-            }),
+            faint: SPREADING.map(
+                |r#type| {
+                    if r#type == spec.r#type { 0.0 } else { spec.undertone as f32 }
+                },
+            ),
             per_spread_mm: 1.0 / (spec.spread_mm as f32).max(1e-6),
             mottle: spec.mottle as f32,
             leaf: mix(&pigments.leaf),

@@ -13,8 +13,8 @@
 
 use super::amounts::Mixer;
 use super::{
-    Albedo, Amounts, BACK, ColourSpec, ColourType, FRONT, Face, Hsv, SPREADING, SideColour, StateSpec,
-    Tissue, shade,
+    Albedo, Amounts, BACK, ColourSpec, ColourType, FRONT, Face, Hsv, SPREADING, SideColour,
+    StateSpec, Tissue, shade,
 };
 use crate::raster::color::{Tint, byte};
 use crate::texture::brush::{Shade, Shades};
@@ -46,9 +46,8 @@ impl Leaf {
     ) -> Self {
         let mut alike = spec.clone();
         let lattice = lattice::of(Albedo::Total);
-        let leaf_of = |colour: &Hsv| {
-            Amounts::of(lattice.leaf_of(colour.tint().srgb()).map(f64::from))
-        };
+        let leaf_of =
+            |colour: &Hsv| Amounts::of(lattice.leaf_of(colour.tint().srgb()).map(f64::from));
         let pigments = &mut alike.pigments;
         pigments.leaf = leaf_of(&spec.front.base);
         pigments.alternate = leaf_of(&spec.front.alternate);
@@ -84,8 +83,11 @@ impl Leaf {
                 let kept = alive * (1.0 - tissue.injury.brown) * (1.0 - tissue.injury.pale);
                 for c in 0..3 {
                     let now = shades[i][c];
-                    let seen =
-                        if self.changed { now + (chosen[c] - sound[i][c]) * kept } else { chosen[c] };
+                    let seen = if self.changed {
+                        now + (chosen[c] - sound[i][c]) * kept
+                    } else {
+                        chosen[c]
+                    };
                     let seen = seen.clamp(0.0, 1.0);
                     shades[i][c] = seen;
                     // No more light comes out than falls in; squares stand in for sRGB's curve, which

@@ -167,9 +167,7 @@ impl Turned {
     }
 
     #[inline(always)]
-    pub(super) fn of(
-        [chlorophyll, carotenoid, anthocyanin, brown, structure]: [f32; 5],
-    ) -> Self {
+    pub(super) fn of([chlorophyll, carotenoid, anthocyanin, brown, structure]: [f32; 5]) -> Self {
         Self { chlorophyll, carotenoid, anthocyanin, brown, structure }
     }
 
@@ -187,7 +185,7 @@ impl Turned {
                 * smooth(0.08, 0.62, s)
                 * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
-            structure: 0.45 * smooth(0.1, 0.6, s) + 0.1 * end,
+            structure: 0.4 * smooth(0.0, 0.68, s) + 0.15 * end,
         }
     }
 }

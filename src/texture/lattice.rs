@@ -148,7 +148,7 @@ impl Lattice {
             let far: f32 = (0..3).map(|c| (seen[c] - colour[c]).powi(2)).sum();
             let [green, yellow, red, brown, structure] = amounts;
             let usual = ((yellow - 0.2 * green - 1.0) / 20.0).powi(2);
-            far + 1e-4 * usual + 2e-6 * red + 1e-4 * brown + 2e-5 * (structure - 1.6).powi(2)
+            far + 1e-4 * usual + 2e-6 * red + 1e-4 * brown + 1e-4 * (structure - 1.6).powi(2)
         };
         let node = |index: usize| -> [f32; 5] {
             std::array::from_fn(|k| {

@@ -182,7 +182,8 @@ impl Turned {
             chlorophyll: left + green * (1.0 - left) * (1.0 - end),
             carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.45 * end),
             anthocyanin: spec.anthocyanin_ug_cm2 as f32
-                * smooth(0.08, 0.62, s)
+                * 0.5
+                * (smooth(0.04, 0.66, s) + ((s - 0.04) / 0.62).clamp(0.0, 1.0))
                 * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
             structure: 0.4 * smooth(0.0, 0.68, s) + 0.15 * end,

@@ -278,10 +278,6 @@ impl<S> Field<S> {
         self.cells.min + (DVec2::new(column as f64, row as f64) + 0.5) * self.cells.width
     }
 
-    fn slots_in(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + '_ {
-        self.cells.run(row, column, column).chain(self.cells.newborn_in(row, column))
-    }
-
     /// From this far (squared) on a node matters to none of the sources in a cell; [`DEAD`] when there
     /// is none.
     pub(super) fn bound2_of_cell(&self, row: usize, column: usize) -> f64 {

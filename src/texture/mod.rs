@@ -4,8 +4,8 @@
 //! empty texels, and reads normals and occlusion off the heights.
 //!
 //! A texel takes 19 bytes a side when every map of the default set is kept, so 8192² with both sides
-//! needs 2.6 GB, and 256 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
-//! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
+//! needs 2.6 GB, and 540 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
+//! rest is small beside it: 2 bytes a texel while the leaf is spread over the empty ones.
 
 pub mod atlas;
 mod brush;

@@ -335,8 +335,8 @@ impl SideRows<'_> {
             let n = texels.len();
             // Written as loops: what iterators do out of line would be done without vectors.
             if side == 0 {
-                for i in 0..n.min(LANES) {
-                    texels[i] = value(i);
+                for (i, texel) in texels.iter_mut().enumerate().take(LANES) {
+                    *texel = value(i);
                 }
             } else {
                 for i in 0..n.min(LANES) {

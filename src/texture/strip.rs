@@ -184,6 +184,7 @@ impl Strip {
     }
 
     /// Nets and grain.
+    #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
     pub(super) fn read_structure(&mut self, scene: &Scene, structure: &Structure) {
         let (mut bent, mut distance, mut number) = ([[0.0; LANES]; 2], [0.0; LANES], [0.0; LANES]);
@@ -248,6 +249,7 @@ impl Strip {
     }
 
     /// Where every place stands in the season.
+    #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
     pub(super) fn read_condition(&mut self, scene: &Scene) {
         if scene.course.is_plain() {

@@ -237,11 +237,11 @@ impl Mixer {
     fn add_petiole(&self, strip: &Strip, sides: [&mut Shades; 2]) {
         let petiole = shade(self.petiole, 0.3);
         for (shades, face) in sides.into_iter().zip([&FRONT, &BACK]) {
-            for i in 0..strip.len {
+            for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
                 let tissue = strip.tissue(i);
                 let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
                 let share = 0.55 * near * tissue.veins_seen(face, self.mottle)[1];
-                shades[i] = Shade::of(shades[i]).mixed(petiole, share).array();
+                *seen = Shade::of(*seen).mixed(petiole, share).array();
             }
         }
     }

@@ -4,9 +4,12 @@
 use glam::DVec2;
 use palette::{FromColor, Lab, Srgb};
 use venation::geometry::polygon::signed_area;
+use venation::observer::Silent;
+use venation::seed::Seed;
 use venation::texture::damage::DamageSpec;
-use venation::texture::pigment::{Albedo, ColourType};
-use venation::texture::{Style, TextureSet};
+use venation::texture::map::MapKind;
+use venation::texture::pigment::{Albedo, ColourModel, ColourType, Hsv};
+use venation::texture::{Style, TextureSet, paint};
 
 use crate::sample_leaf;
 use crate::support::{contents, fail, fresh, succeed};
@@ -167,6 +170,96 @@ fn a_diffuse_base_colour_is_the_total_less_the_surface() {
     assert!((0.030..0.046).contains(&surface(1)), "{}", surface(1));
 }
 
+#[test]
+fn hues_chosen_by_hand_turn_with_the_season_and_let_light_through() {
+    let at = |season| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.model = ColourModel::Hsv;
+        settings.state.season = season;
+        settings.colour.pigments.autumn.anthocyanin_ug_cm2 = 0.0;
+        painted(&settings)
+    };
+    let (summer, autumn, litter) = (at(0.0), at(0.5), at(1.0));
+    // In summer as chosen: 92 degrees, and the light that comes through is greener yellow.
+    assert!((85.0..100.0).contains(&hue_deg(&summer)), "{}", hue_deg(&summer));
+    assert!((35.0..62.0).contains(&hue_deg(&autumn)), "{}", hue_deg(&autumn));
+    let [r, g, b] = mean(&litter);
+    assert!(r > g && g > b, "{r} {g} {b}");
+    for set in [&summer, &autumn, &litter] {
+        let texels = set.front.base_colour.values().iter().zip(set.front.translucency.values());
+        let mut shine = 0;
+        for (back, through) in texels {
+            for c in 0..3 {
+                assert!(linear(back[c]) + linear(through[c]) <= 1.005, "{back:?} {through:?}");
+            }
+            shine += usize::from(back[3] == 255 && through[0].max(through[1]) > 60);
+        }
+        assert!(shine > 1000, "{shine}");
+    }
+    // A thin pale leaf lets more light through than a deep green one.
+    let through = |value: f64, saturation: f64| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.model = ColourModel::Hsv;
+        settings.colour.front.base = Hsv { hue_deg: 92.0, saturation, value };
+        let set = painted(&settings);
+        set.front.translucency.values().iter().map(|texel| u64::from(texel[1])).sum::<u64>()
+    };
+    let (pale, deep) = (through(0.6, 0.5), through(0.3, 0.45));
+    assert!(pale > deep * 5 / 4, "{pale} {deep}");
+}
+
+#[test]
+fn evergreen_leaves_stay_green_until_they_die() {
+    let at = |kept, season| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.pigments.autumn.chlorophyll_kept = kept;
+        settings.state.season = season;
+        hue_deg(&painted(&settings))
+    };
+    let [summer, evergreen, turned, dead] =
+        [at(0.9, 0.0), at(0.9, 0.5), at(0.0, 0.5), at(0.9, 1.0)];
+    let half = 0.5 * (summer + turned);
+    assert!(evergreen > half && turned < 62.0, "{summer} {evergreen} {turned}");
+    assert!(dead < 45.0, "{dead}");
+}
+
+#[test]
+fn sixteen_bits_are_more_than_eight_and_agree_with_them() {
+    let margin = sample_leaf::ovate(60.0);
+    let veins = sample_leaf::veins(&margin);
+    let settings = Settings::of_size(96);
+    let mut deep = settings.as_paint();
+    deep.maps = deep.maps.deep();
+    let deep = paint(&deep, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
+    let plain = settings.painted(&margin, &veins);
+    for (deep, plain) in [(&deep.front, &plain.front), (&deep.back, &plain.back)] {
+        for map in [
+            MapKind::BaseColour,
+            MapKind::Opacity,
+            MapKind::Roughness,
+            MapKind::Gloss,
+            MapKind::AmbientOcclusion,
+            MapKind::Orm,
+            MapKind::MaskMap,
+            MapKind::Translucency,
+            MapKind::VeinMask,
+        ] {
+            assert!(deep.samples(map) == plain.samples(map), "{map}: 8 bits are what they were");
+            let (fine, coarse) = (deep.samples_of(map, 16, 1.0), plain.samples(map));
+            assert_eq!(fine.len(), 2 * coarse.len());
+            let mut between = 0;
+            for (pair, &byte) in fine.chunks_exact(2).zip(&coarse) {
+                let value = u16::from_be_bytes([pair[0], pair[1]]);
+                let off = f64::from(value) / 257.0 - f64::from(byte);
+                assert!(off.abs() <= 0.51, "{map}: {value} {byte}");
+                between += usize::from(value % 257 != 0);
+            }
+            let few = if map == MapKind::Opacity { 50 } else { 1000 };
+            assert!(between > few, "{map}: {between} values are between those of 8 bits");
+        }
+    }
+}
+
 /// Of the mean colour, as long as red or green is the greatest and blue the least.
 fn hue_deg(set: &TextureSet) -> f64 {
     let [r, g, b] = mean(set);
@@ -216,6 +309,45 @@ fn wounds_take_the_share_they_are_asked_for_and_spare_what_they_should() {
         let same = pairs.filter(|(a, b)| a[3] == 255 && a == b).count();
         assert!(same as f64 > 0.4 * cover(&whole), "{wound}: {same}");
     }
+}
+
+#[test]
+fn eaten_leaves_hang_together_and_their_veins_end_at_the_gaps() {
+    let mut settings = Settings::of_size(384);
+    settings.damage = DamageSpec { holes: 0.25, margin_bites: 0.25, ..DamageSpec::default() };
+    for seed in 1..=3 {
+        settings.damage.seed = seed;
+        let set = painted(&settings);
+        let solid = set.front.base_colour.map(|colour| colour[3] > 127);
+        let parts = venation::raster::components::Components::of(&solid);
+        let of_size = parts.areas[1..].iter().filter(|&&area| area > 12).count();
+        assert_eq!(of_size, 1, "{:?}", parts.areas);
+    }
+    let folder = fresh();
+    let arguments = ["generate", "linden", "--size", "256", "--damage", "holes=0.25"];
+    let files = ["--maps", "opacity", "--format", "json,svg", "-o", "eaten"];
+    succeed(folder.path(), &[&arguments[..], &files].concat());
+    let open = |name: &str| folder.path().join("eaten").join(name);
+    let opacity = image::open(open("tilia-cordata_Opacity.png")).expect("a map").into_luma8();
+    let json = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(open(name)).expect("a file")).expect("JSON")
+    };
+    let (veins, manifest) = (json("tilia-cordata_veins.json"), json("manifest.json"));
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let front = &manifest["uv_from_mm"]["front"];
+    let pixel = |mm: f64, axis: usize| {
+        (mm * number(&front["scale"][axis]) + number(&front["offset"][axis])) * 256.0
+    };
+    let nodes = veins["nodes"].as_array().expect("nodes");
+    let bare = nodes.iter().filter(|node| {
+        let (x, y) = (pixel(number(&node["x"]), 0), 256.0 - pixel(number(&node["y"]), 1));
+        // A node on the edge of a gap may lie in a texel that is all but empty.
+        let around = [(0.0, 0.0), (0.7, 0.0), (-0.7, 0.0), (0.0, 0.7), (0.0, -0.7)];
+        let open = |(dx, dy): &(f64, f64)| opacity.get_pixel((x + dx) as u32, (y + dy) as u32).0[0];
+        around.iter().all(|place| open(place) == 0)
+    });
+    let bare = bare.count();
+    assert!(nodes.len() > 500 && bare < nodes.len() / 500, "{bare} of {}", nodes.len());
 }
 
 #[test]

@@ -83,8 +83,11 @@ impl Scene {
         // A thin midrib widens towards the petiole, and a leaf without veins still hangs on one.
         let stalked = paint.petiole.length_mm > 0.0;
         let neck = if stalked { root.max(NECK * 0.5 * paint.petiole.width_mm) } else { root };
+        // Into a shield the petiole runs from below: it goes on in no vein, and widens none.
+        let goes_on = !margin.is_peltate();
+        let midrib = if goes_on { midrib(venation) } else { Vec::new() };
         let midrib: Vec<DVec2> =
-            midrib(venation).into_iter().map(|node| graph.positions()[node as usize]).collect();
+            midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
         let stalk = Stalk::new(paint.petiole, neck, &midrib);
         let (blade, below) = (margin.bounds(), stalk.bounds());
         let frame = TextureFrame::around(
@@ -126,7 +129,7 @@ impl Scene {
             per_mm: per_mm as f32,
             outline: margin.outline().iter().map(pixel).collect(),
             slits: slits.collect(),
-            strokes: Strokes::new(venation, neck, &frame, size),
+            strokes: Strokes::new(venation, if goes_on { neck } else { 0.0 }, &frame, size),
             guide,
             wounds,
             course,

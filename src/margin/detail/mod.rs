@@ -122,10 +122,7 @@ pub fn carve(
 
 /// The records of the lobes of a leaf, in the order of their tips on the outline.
 fn lobes_in_order(spec: &MarginSpec) -> Vec<&LobeRecord> {
-    let on = |side: LobeSide| {
-        let there = move |lobe: &&LobeRecord| lobe.side == side || lobe.side == LobeSide::Both;
-        spec.lobe.iter().filter(there)
-    };
+    let on = |side: LobeSide| spec.lobe.iter().filter(move |lobe| lobe.side.is_on(side));
     let apex = spec.lobe.iter().filter(|lobe| lobe.side == LobeSide::Apex);
     on(LobeSide::Right).chain(apex).chain(on(LobeSide::Left).rev()).collect()
 }

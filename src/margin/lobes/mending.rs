@@ -100,7 +100,7 @@ fn record_of(records: &[LobeRecord], tip: DVec2, inset: f64) -> Option<usize> {
         let on = match record.side {
             LobeSide::Right => at.x >= 0.0,
             LobeSide::Left => at.x <= 0.0,
-            LobeSide::Both | LobeSide::Apex => true,
+            LobeSide::Both | LobeSide::Each | LobeSide::Apex => true,
         };
         if on { super::Lobe::new(record).tip().distance(folded) } else { f64::INFINITY }
     };

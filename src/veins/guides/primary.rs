@@ -111,18 +111,23 @@ fn palmate(
     primaries.secondaries_from = spec.primary_origin;
 }
 
+/// How far the ways into a lobe that are tried bow away from the midrib (degrees).
+const BOWS_DEG: [f64; 4] = [6.0, 2.0, -2.0, -6.0];
+
 /// From the base into the tip of a lobe: a slight bow, or round the sinus where that is cut off.
-fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
+pub(super) fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
     let chord = tip - from;
-    let bow = curve::cubic(
-        [from, from + turned(chord, 6.0, side) * 0.35, from + turned(chord, 1.0, side) * 0.7, tip],
-        60,
-    );
-    let inner = &bow[1..bow.len() - 2];
-    if inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1])) {
-        return bow;
-    }
-    planter.ground.route(from, tip).unwrap_or(bow)
+    let bow = |degrees: f64| {
+        let leave = from + turned(chord, degrees, side) * 0.35;
+        let arrive = from + turned(chord, degrees / 6.0, side) * 0.7;
+        curve::cubic([from, leave, arrive, tip], 60)
+    };
+    let is_free = |bow: &Vec<DVec2>| {
+        let inner = &bow[1..bow.len() - 2];
+        inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1]))
+    };
+    let found = BOWS_DEG.into_iter().map(bow).find(is_free);
+    found.or_else(|| planter.ground.route(from, tip)).unwrap_or_else(|| bow(BOWS_DEG[0]))
 }
 
 /// Half the width of the blade on one side of a midrib, at 64 places from base to apex, evened.

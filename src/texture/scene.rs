@@ -39,6 +39,9 @@ const SLIT_MM: f64 = 0.15;
 /// The petiole is at least this share of its own width where it meets the blade.
 const NECK: f64 = 0.74;
 
+/// A midrib with this share of the radius at the base is the only primary.
+const LEADS: f64 = 0.9;
+
 pub(super) struct Scene {
     pub(super) size: usize,
     pub(super) frame: TextureFrame,
@@ -86,9 +89,12 @@ impl Scene {
         // Into a shield the petiole runs from below: it goes on in no vein, and widens none.
         let goes_on = !margin.is_peltate();
         let midrib = if goes_on { midrib(venation) } else { Vec::new() };
+        // One of several primaries does not lead the petiole.
+        let leads =
+            midrib.get(1).is_some_and(|&node| venation.radii()[node as usize] > LEADS * root);
         let midrib: Vec<DVec2> =
             midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
-        let stalk = Stalk::new(paint.petiole, neck, &midrib);
+        let stalk = Stalk::new(paint.petiole, neck, &midrib, leads);
         let (blade, below) = (margin.bounds(), stalk.bounds());
         let frame = TextureFrame::around(
             blade.min.min(below.min),

@@ -20,6 +20,7 @@ mod course;
 mod curve;
 mod ends;
 mod ground;
+mod intersecondary;
 mod lobes;
 mod matching;
 mod planter;

@@ -38,6 +38,10 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) ->
     let root = planter.root(PRIMARY);
     let mut primaries = Primaries { midrib: None, laterals: Vec::new(), secondaries_from: 0.0 };
     if spec.primary == PrimaryType::Flabellate {
+        // All round a petiole one ray runs to the apex and does not fork.
+        if planter.ground.margin().is_peltate() {
+            planter.lay(root, &planter.ground.axis(), PRIMARY, 0.0);
+        }
         fan(spec, planter, root, rng);
         return primaries;
     }
@@ -251,18 +255,46 @@ fn fan(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
         let angle = (**p - base).angle_to(DVec2::Y).abs().to_degrees();
         angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(**p, 0.97))
     };
-    let arc: Vec<DVec2> = line.iter().filter(within).copied().collect();
-    let count = (curve::length(&arc) / spec.fork_spacing_mm).ceil().clamp(1.0, 400.0) as usize;
+    if ground.margin().is_peltate() {
+        // Both sides of the ray to the apex.
+        let tip = ground.margin().apex();
+        let apex = (0..line.len())
+            .min_by(|&i, &j| {
+                line[i].distance_squared(tip).total_cmp(&line[j].distance_squared(tip))
+            })
+            .unwrap_or(0);
+        let basal = (spec.primary_count.saturating_sub(1) / 2) as usize;
+        for side in [&line[..=apex], &line[apex..]] {
+            let arc: Vec<DVec2> = side.iter().filter(within).copied().collect();
+            rays(spec, planter, root, &arc, basal, rng);
+        }
+    } else {
+        let arc: Vec<DVec2> = line.iter().filter(within).copied().collect();
+        rays(spec, planter, root, &arc, spec.primary_count as usize, rng);
+    }
+}
+
+/// The veins of a fan over a part of the margin, of which `basal` leave the base.
+fn rays(
+    spec: &GuideSpec,
+    planter: &mut Planter<'_>,
+    root: u32,
+    arc: &[DVec2],
+    basal: usize,
+    rng: &mut Rng,
+) {
+    let base = planter.ground.root();
+    let count = (curve::length(arc) / spec.fork_spacing_mm).ceil().clamp(1.0, 400.0) as usize;
     if arc.len() < 2 {
         return;
     }
     let ends: Vec<DVec2> = (0..count)
         .map(|i| {
             let jitter = 0.5 * spec.irregularity * rng.between(-0.5, 0.5);
-            curve::at(&arc, (i as f64 + 0.5 + jitter) / count as f64).0
+            curve::at(arc, (i as f64 + 0.5 + jitter) / count as f64).0
         })
         .collect();
-    let basal = (spec.primary_count as usize).clamp(1, count);
+    let basal = basal.clamp(1, count);
     let mut open: Vec<Ray> = (0..basal)
         .map(|i| {
             let (first, last) = (i * count / basal, (i + 1) * count / basal);

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::course::{Course, decurrent};
 use super::curve;
 use super::ends::{arch_to, branch_to, festoon, fork};
+use super::intersecondary;
 use super::lobes;
 use super::matching::teeth_for;
 use super::planter::{Planter, Vein};
@@ -12,7 +13,7 @@ use super::primary::{Lateral, Primaries};
 use super::rim::Rim;
 use super::targets::{self, Tip};
 use super::tertiary::{self, Bearer};
-use super::{GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
+use super::{GuideSpec, PrimaryType, RimType, SECONDARY, SecondaryType};
 use crate::seed::Rng;
 
 /// A secondary of full irregularity leaves at up to so many degrees more or less.
@@ -205,7 +206,7 @@ impl Row<'_> {
         }
         for pairs in plans.windows(2) {
             for (lower, upper) in pairs[0].iter().zip(&pairs[1]) {
-                self.intersecondaries(planter, midrib, lower, upper, rng);
+                intersecondary::lay(self.spec, planter, midrib, lower, upper, rng);
             }
         }
     }
@@ -381,35 +382,6 @@ impl Row<'_> {
         tips[k].is_none()
             && self.spec.secondary == SecondaryType::Craspedodromous
             && !self.teeth.iter().any(between)
-    }
-
-    fn intersecondaries(
-        &self,
-        planter: &mut Planter<'_>,
-        midrib: &Vein,
-        lower: &Plan,
-        upper: &Plan,
-        rng: &mut Rng,
-    ) {
-        let spec = self.spec;
-        let [a, b, c] = [rng.unit(), rng.unit(), rng.unit()];
-        let count = (spec.intersecondary_count + a).floor() as usize;
-        for i in 0..count {
-            let part =
-                (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
-            let share = lower.share + (upper.share - lower.share) * part;
-            let (node, from, ahead) = midrib.at(share);
-            let course = Course {
-                from,
-                ahead,
-                side: lower.side,
-                angle_deg: 0.5 * (lower.angle_deg + upper.angle_deg) + 4.0 * (c - 0.5),
-                curvature: lower.curvature,
-            };
-            let length = spec.intersecondary_length * (0.75 + 0.5 * b);
-            let line = course.part_way(planter.ground, length);
-            planter.lay(node, &line, INTERSECONDARY, 0.4);
-        }
     }
 }
 

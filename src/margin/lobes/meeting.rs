@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::place::{Half, Lobe};
-use super::{Landmark, LandmarkKind, Outline, Waypoint, curve};
+use super::{Landmark, LandmarkKind, Outline, STRIP, Waypoint, curve};
 use crate::geometry::Rect;
 
 /// Segments that are tested together: few enough to miss early, enough to skip many.
@@ -22,9 +22,16 @@ pub(super) fn join(
     // From the tip down, and from the tip of the next down.
     let down = curve_from_tip(lobe, lobe.upper, starts.0);
     let up = curve_from_tip(next, half, starts.1);
-    let met = first_crossing(&down, &up);
+    // Lobes out of one place always touch there; those that meet hardly farther out leave a strip.
+    let shared = starts.0.at == starts.1.at;
+    let least = match starts.0.at == lobe.origin {
+        true => STRIP * lobe.length.min(next.length),
+        false => 0.0,
+    };
+    let met =
+        first_crossing(&down, &up).filter(|(_, _, at)| !shared || at.distance(starts.0.at) > least);
     let ends = (down.len() - 2, up.len() - 2, starts.0.at);
-    let one_place = starts.0.at == starts.1.at && starts.0.at != lobe.origin;
+    let one_place = shared && starts.0.at != lobe.origin;
     let Some((i, j, valley)) = met.or(one_place.then_some(ends)) else { return false };
     outline.points.extend(&down[1..=i]);
     outline.points.push(valley);

@@ -135,7 +135,8 @@ parameters! {
     }
 }
 
-/// Neighbours that do not meet leave this share of the shorter lobe between them and the midrib.
+/// Neighbours that do not meet, or nearer to the midrib than this, leave this share of the shorter lobe
+/// between them and it.
 pub const STRIP: f64 = 0.08;
 
 /// The margin through the tangent at a valley made by [`STRIP`] (degrees).

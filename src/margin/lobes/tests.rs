@@ -349,22 +349,22 @@ fn basal_lobes_that_overlap_are_cut_back_to_a_slit() {
 }
 
 #[test]
-fn lobes_that_cross_name_the_key_the_value_and_a_bound_that_works() {
-    let slim = HalfLobe { waist_x: 0.14, ..HalfLobe::default() };
-    let lobing = LobingSpec {
-        lower: slim.clone(),
-        upper: slim,
-        valley: ValleyKind::Set,
-        valley_distance: 0.4,
-        valley_angle_deg: 20.0,
-        ..pinnate(9)
+fn a_lobe_that_hides_another_names_the_key_the_value_and_a_bound_that_works() {
+    let half = |waist_x: f64| HalfLobe { waist_x, ..HalfLobe::default() };
+    let hidden = LobeRecord {
+        angle_deg: 100.0,
+        length: 0.6,
+        lower: half(0.14),
+        upper: half(0.14),
+        ..LobeRecord::default()
     };
-    let mut lobe = lobing.records().unwrap();
-    lobe[1].lower.waist_x = 1.1;
-    let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
+    let wide =
+        LobeRecord { angle_deg: 60.0, length: 0.9, lower: half(0.6), ..LobeRecord::default() };
+    let apex = LobeRecord { side: LobeSide::Apex, ..LobeRecord::default() };
+    let spec = MarginSpec { lobe: vec![hidden, wide, apex], ..lobed(LobingSpec::default()) };
     let error = entire(&spec).unwrap_err();
     let MarginError::LobeCrossing { key, value, problem, .. } = &error else { panic!("{error}") };
-    assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 1.1));
+    assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 0.6));
     let words = problem.split("take ").nth(1).unwrap();
     let bound: f64 = words.split(' ').next().unwrap().parse().unwrap();
     let mut mended = spec;

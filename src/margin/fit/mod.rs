@@ -16,8 +16,8 @@
 
 mod flank;
 mod half;
-mod incisions;
-mod records;
+pub(super) mod incisions;
+pub(super) mod records;
 
 use glam::DVec2;
 

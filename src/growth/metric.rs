@@ -53,6 +53,12 @@ impl Metric<'_> {
         self.warp.is_some()
     }
 
+    /// Whether the measure is plain distance in the frame of the mature leaf.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.warp.is_none() && self.stretch == DVec2::ONE
+    }
+
     /// Where a point lies in the measure.
     #[inline]
     #[must_use]

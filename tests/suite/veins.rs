@@ -95,15 +95,6 @@ fn case(
         ..VeinSpec::default()
     };
     spec.kill_distance_mm = spec.node_step_mm * rng.between(0.5, 4.0);
-    if given {
-        let bounds = margin.bounds();
-        spec.sources_mm = (0..90)
-            .map(|_| {
-                let x = rng.between(bounds.min.x, bounds.max.x);
-                [x, rng.between(bounds.min.y, bounds.max.y)]
-            })
-            .collect();
-    }
     if rng.unit() < 0.4 {
         let some = |rng: &mut Rng, most: f64| (rng.unit() < 0.6).then(|| rng.between(0.1, most));
         spec.straightness = some(rng, 1.0).unwrap_or(0.0);
@@ -112,6 +103,15 @@ fn case(
         spec.symmetry_jitter_mm = some(rng, 3.0).unwrap_or(0.0);
         spec.phases.coarseness = some(rng, 6.0).unwrap_or(1.0).max(1.0);
         spec.phases.settle_at = rng.between(0.2, 1.0);
+    }
+    if given {
+        let bounds = margin.bounds();
+        spec.sources_mm = (0..90)
+            .map(|_| {
+                let x = rng.between(bounds.min.x, bounds.max.x);
+                [x, rng.between(bounds.min.y, bounds.max.y)]
+            })
+            .collect();
     }
     (GrowingBlade::new(margin, &growth).expect("a blade"), spec)
 }

@@ -21,6 +21,27 @@ use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
 
+/// By the ids of sources, whom each calls, where that stays so until a new node comes.
+///
+/// Sources call in the order of their ids and stand in the order of their cells: from here calling is a
+/// walk, not a search for each, and what hearing of a node writes here is small enough to stay near.
+#[derive(Debug, Default)]
+struct Views {
+    places: Vec<DVec2>,
+    /// [`NONE`] when it calls nobody.
+    nodes: Vec<NodeId>,
+    /// The node that was last seen.
+    seen: Vec<NodeId>,
+}
+
+impl Views {
+    fn add(&mut self, place: DVec2, node: NodeId) {
+        self.places.push(place);
+        self.nodes.push(node);
+        self.seen.push(NONE);
+    }
+}
+
 /// The living sources and whom they call.
 pub(super) struct Sources {
     field: Field<Claim>,
@@ -30,6 +51,8 @@ pub(super) struct Sources {
     doomed: Vec<u32>,
     /// Without a reach.
     tiles: Option<Tiles>,
+    /// Without a reach, where distances do not change; else empty.
+    views: Views,
     deforms: bool,
     /// Distances may shrink, too: every source is looked after in every step.
     warps: bool,
@@ -45,6 +68,7 @@ impl Sources {
             calls: Calls::default(),
             doomed: Vec::new(),
             tiles: ranges.are_unlimited().then(Tiles::default),
+            views: Views::default(),
             deforms: blade.deforms(),
             warps: blade.is_warped(),
             convex: blade.is_convex(),
@@ -54,11 +78,42 @@ impl Sources {
     /// Adds a source that is used up already, so that those after it keep their numbers.
     pub(super) fn add_spent(&mut self) {
         self.field.add_spent();
+        if self.keeps_views() {
+            self.views.add(DVec2::NAN, NONE);
+        }
     }
 
     /// Whether sources keep a bound on the distance of all nodes but the nearest.
     fn bounds_others(&self) -> bool {
         self.deforms && !self.warps
+    }
+
+    /// Whether whom a source calls stays so until a new node comes.
+    fn keeps_views(&self) -> bool {
+        self.tiles.is_some() && !self.deforms && !self.warps
+    }
+
+    /// Lets every source call whom it is known to call.
+    fn call_as_known(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
+        let mut acting = self.field.take_acting();
+        acting.retain(|&source| {
+            let Some(slot) = self.field.slot(source) else { return false };
+            let id = source as usize;
+            let node = self.views.nodes[id];
+            if node == NONE {
+                return true;
+            }
+            if !self.convex && self.views.seen[id] != node {
+                if !self.sees(slot, blade, step, nodes) {
+                    return true;
+                }
+                self.views.seen[id] = node;
+            }
+            let unit = unit(nodes.position(node), self.views.places[id], metric);
+            self.calls.add(source, node, unit);
+            true
+        });
+        self.field.set_acting(acting);
     }
 
     /// Follows the nearest node of a source while the blade deforms.
@@ -102,6 +157,11 @@ impl Sources {
     }
 }
 
+/// Whom a source calls whose nearest node is that far away: nobody, when it is touched.
+fn callee(node: NodeId, distance2: f64) -> NodeId {
+    if distance2 > 0.0 { node } else { NONE }
+}
+
 impl Callers for Sources {
     fn len(&self) -> usize {
         self.field.len()
@@ -118,6 +178,9 @@ impl Callers for Sources {
         if let Some(nearest) = found {
             claim.set(nearest.distance2, nearest.id, nearest.others2);
         }
+        if self.keeps_views() {
+            self.views.add(p, callee(claim.node, claim.near2));
+        }
         let is_acting = found.is_some() || self.warps;
         let id = self.field.add(p, claim.bound2(self.bounds_others()), is_acting, claim);
         if claim.near2 <= self.ranges.kill2(metric) {
@@ -131,6 +194,9 @@ impl Callers for Sources {
 
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
         self.calls.begin(nodes.len());
+        if self.keeps_views() {
+            return self.call_as_known(blade, step, metric, nodes);
+        }
         let (reach2, search2) = (self.ranges.reach2(metric), self.ranges.search2(metric));
         let mut acting = self.field.take_acting();
         acting.retain(|&source| {
@@ -184,10 +250,16 @@ impl Callers for Sources {
     ) -> Vec<u32> {
         let fresh = &nodes.positions()[before..];
         let (kill2, bounds_others) = (self.ranges.kill2(metric), self.bounds_others());
+        let keeps_views = self.keeps_views();
         if let Some(tiles) = &mut self.tiles {
-            tiles.offer(&mut self.field, fresh, metric, bounds_others, |claim, found| {
+            let (field, views) = (&mut self.field, &mut self.views);
+            tiles.offer(field, fresh, metric, bounds_others, |id, claim, found| {
                 let node = (before + found.tip) as NodeId;
                 let bound2 = claim.hear(node, found.distance2, kill2, bounds_others);
+                if keeps_views {
+                    views.nodes[id as usize] = callee(node, found.distance2);
+                    return bound2;
+                }
                 claim.others2 = claim.others2.min(found.others2);
                 if bound2 == DEAD { DEAD } else { claim.bound2(bounds_others) }
             });

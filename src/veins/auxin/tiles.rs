@@ -113,7 +113,7 @@ impl Part {
 
 impl Tiles {
     /// Tells every source of the nearest of the new nodes `fresh`, wherever that may be nearer than
-    /// the source's bound; `hear` answers with the new bound. `bounds_others` says whether the bound is
+    /// the source's bound; `hear`, told the source's id, answers with the new bound. `bounds_others` says whether the bound is
     /// on the distance of all nodes but the nearest.
     pub(super) fn offer<S>(
         &mut self,
@@ -121,7 +121,7 @@ impl Tiles {
         fresh: &[DVec2],
         metric: Metric,
         bounds_others: bool,
-        hear: impl Fn(&mut S, Found) -> f64,
+        mut hear: impl FnMut(u32, &mut S, Found) -> f64,
     ) {
         if fresh.is_empty() {
             return;
@@ -138,6 +138,7 @@ impl Tiles {
             let places: Vec<DVec2> = tips.iter().map(|tip| tip.stretched).collect();
             PointIndex::new(&places)
         });
+        let is_plain = metric.is_plain() && !bounds_others;
         let (columns, rows, width) = field.cells();
         let part = |middle: DVec2, width: f64, bound2: f64| Part {
             middle: metric.place(middle),
@@ -180,12 +181,33 @@ impl Tiles {
                 let Some(radius) = tile.choose(of_block, of_tile) else { continue };
                 // A tip that is not among the chosen lies at least this far from every member.
                 let beyond2 = (radius - tile.half_diagonal).max(0.0).powi(2);
-                let find = |p: DVec2| nearest(of_tile, p, beyond2, metric);
-                field.tell_cell(row, column, find, &hear);
+                if is_plain {
+                    let find = |p| nearest_only(of_tile, p);
+                    field.tell_cell(row, column, find, &mut hear);
+                } else {
+                    let find = |p| nearest(of_tile, p, beyond2, metric);
+                    field.tell_cell(row, column, find, &mut hear);
+                }
             }
         }
         field.settle_news();
     }
+}
+
+/// The nearest of some tips, of which there is at least one, by plain distance and with nothing said of
+/// the others. Apart from [`nearest`], for every source is asked in every step: 5 ns less of 30.
+#[inline]
+fn nearest_only(tips: &[Tip], p: DVec2) -> Option<Found> {
+    let (first, rest) = tips.split_first()?;
+    let (mut distance2, mut number) = (p.distance_squared(first.at), first.number);
+    for tip in rest {
+        let other2 = p.distance_squared(tip.at);
+        // Both chosen without a jump: which tip is nearest cannot be foretold.
+        let is_nearer = other2 < distance2;
+        number = if is_nearer { tip.number } else { number };
+        distance2 = if is_nearer { other2 } else { distance2 };
+    }
+    Some(Found { tip: number as usize, distance2, others2: f64::INFINITY })
 }
 
 /// The nearest of some tips.

@@ -152,7 +152,7 @@ impl World<'_> {
         way[b] <= limit || edges.contains(&(a, b)) || edges.contains(&(b, a))
     }
 
-    /// The first edge in the way from `p` to `q`, those at some nodes excepted.
+    /// The first edge crossed or touched on the way from `p` to `q`, those at some nodes excepted.
     fn crossed(&self, p: DVec2, q: DVec2, apart: [usize; 2]) -> Option<(usize, usize)> {
         let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
         let mut first: Option<(f64, (usize, usize))> = None;
@@ -162,8 +162,13 @@ impl World<'_> {
             }
             let (a, b) = (self.positions[u], self.positions[v]);
             let (before, after) = (side(a, b, p), side(a, b, q));
-            if before * after < 0.0 && side(p, q, a) * side(p, q, b) < 0.0 {
-                let way = before / (before - after);
+            // To touch is to be in the way. On one line, where the boxes tell.
+            let meet = before * after <= 0.0
+                && side(p, q, a) * side(p, q, b) <= 0.0
+                && p.min(q).cmple(a.max(b)).all()
+                && a.min(b).cmple(p.max(q)).all();
+            if meet {
+                let way = if before == after { 0.0 } else { before / (before - after) };
                 if first.is_none_or(|(least, _)| way < least) {
                     first = Some((way, (u, v)));
                 }

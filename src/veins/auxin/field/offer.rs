@@ -7,7 +7,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{DEAD, Field, Hit, News, Source, Told};
+use super::{Field, Hit, News, Source, Told};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
@@ -46,27 +46,16 @@ impl<'a, S> Part<'a, S> {
     pub(super) fn tell(
         &mut self,
         hit: Hit,
-        hear: impl Fn(Hit, DVec2, &mut S) -> Told,
+        hear: impl FnOnce(Hit, DVec2, &mut S) -> Told,
         news: &mut News,
     ) {
         let i = hit.slot as usize - self.first;
         if hit.distance2 >= self.bound2[i] {
             return;
         }
-        let source = &mut self.sources[i];
-        let told = hear(hit, self.places[i], &mut source.state);
-        self.bound2[i] = told.bound2;
-        if told.bound2 == DEAD {
-            news.dead.push(source.id);
-            return;
-        }
-        if told.is_marked {
-            news.marked.push(source.id);
-        }
-        if !source.is_acting {
-            source.is_acting = true;
-            news.arrived.push(source.id);
-        }
+        let place = self.places[i];
+        let hear = |state: &mut S| hear(hit, place, state);
+        self.sources[i].hear(&mut self.bound2[i], hear, news);
     }
 
     /// Those up to a slot, and the rest.

@@ -1,7 +1,7 @@
 //! Margins per second on one core: with all that a margin guarantees, and the raw curves alone.
 //!
 //! `cargo bench --bench margin`. One item is one margin; the table says how many points they have.
-//! Garg's thesis (tables 5.3 and 6.3) made 2500 unilobed and 200 to 400 multilobed margins a second.
+//! Garg (2011) made 2500 unilobed and 200 to 400 multilobed margins a second.
 
 use venation::margin::lobes::{self, LobeRecord};
 use venation::margin::{self, MarginKind, MarginSpec, parametric};

@@ -11,8 +11,8 @@ pub(super) fn without_loops(mut outline: Outline) -> Option<Outline> {
         let free = |&(i, j): &(usize, usize)| j < outline.apex || i >= outline.apex;
         let Some(&(first, _)) = crossings.first() else { return Some(outline) };
         // Of the crossings of an edge the farthest: its loop holds those of the others.
-        let same = crossings.iter().filter(|(i, _)| *i == first);
-        let &(i, j) = same.filter(|pair| free(pair)).next_back()?;
+        let mut same = crossings.iter().filter(|(i, _)| *i == first);
+        let &(i, j) = same.rfind(|pair| free(pair))?;
         let n = outline.points.len();
         let [a, b] = [i, i + 1].map(|k| outline.points[k]);
         let [c, d] = [j, (j + 1) % n].map(|k| outline.points[k]);

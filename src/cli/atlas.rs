@@ -19,6 +19,7 @@ use super::generate::{pool, write_failure};
 use super::leaf_args::{self, LeafArgs};
 use super::output_args::OutputArgs;
 use super::progress::{Counter, ProgressWord};
+use super::run_args::RunArgs;
 use super::{Context, Failure, seeds};
 
 #[derive(Debug, clap::Args)]
@@ -46,18 +47,8 @@ pub(crate) struct Args {
     /// Folder to write into [default: the leaf's name and _atlas].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to use; the bytes are the same for any number [default: all processors].
-    #[arg(short, long, value_name = "N")]
-    threads: Option<usize>,
-    /// Report on stdout as one JSON document.
-    #[arg(long)]
-    json: bool,
-    /// Only list the files that would be written.
-    #[arg(short = 'n', long)]
-    dry_run: bool,
-    /// Overwrite files of an earlier run.
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    run: RunArgs,
 }
 
 /// Side of the sheet unless another is asked for (pixels).
@@ -94,14 +85,14 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     output.formats.clear();
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_atlas", first.name)));
     let names = atlas_file_names(&first.name, size, &seeds, &output);
-    let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
+    let overwrite = args.run.overwrite();
     let files = collisions(&folder, names.iter().map(String::as_str));
     if overwrite == Overwrite::Refuse && !files.is_empty() {
         return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
     }
     let mut packed = None;
-    if !args.dry_run {
-        let files = pool(args.threads)?.install(|| {
+    if !args.run.dry_run {
+        let files = pool(args.run.threads)?.install(|| {
             let counter = Counter::new(ProgressWord::Auto, context.quiet, 2 * seeds.len());
             let ready: Vec<Ready> = seeds
                 .par_iter()
@@ -119,8 +110,8 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     }
     let listed: Vec<String> =
         names.iter().map(|name| folder.join(name).display().to_string()).collect();
-    if args.json {
-        let status = if args.dry_run { "planned" } else { "made" };
+    if args.run.json {
+        let status = if args.run.dry_run { "planned" } else { "made" };
         let report = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
             "status": status,

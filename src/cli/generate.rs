@@ -16,6 +16,7 @@ use venation::seed::Seed;
 use super::leaf_args::LeafArgs;
 use super::output_args::OutputArgs;
 use super::progress::{Bar, Counter, ProgressWord};
+use super::run_args::RunArgs;
 use super::{Context, Failure, seeds};
 use job::Job;
 
@@ -61,24 +62,14 @@ pub(crate) struct Args {
     /// Folder to write into [default: the leaf's name].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to use; the bytes are the same for any number [default: all processors].
-    #[arg(short, long, value_name = "N")]
-    threads: Option<usize>,
-    /// Report on stdout as one JSON document.
-    #[arg(long)]
-    json: bool,
-    /// Only list the files that would be written.
-    #[arg(short = 'n', long)]
-    dry_run: bool,
+    #[command(flatten)]
+    run: RunArgs,
     /// What tells of progress: auto is a bar on stderr where a person is watching; openjd prints the lines
     /// that Open Job Description reads, on stdout.
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto")]
     progress: ProgressWord,
-    /// Overwrite files of an earlier run.
-    #[arg(long, conflicts_with = "skip_existing")]
-    force: bool,
     /// Leave leaves alone that are there already with the same settings.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "force")]
     skip_existing: bool,
 }
 
@@ -103,7 +94,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         document.insert("output.formats", Value::Text(formats.clone()), "--format");
     }
     let batch = Batch::new(args, &document)?;
-    let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
+    let overwrite = args.run.overwrite();
     // Nothing is grown before it is known that everything may be written.
     let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
         batch.jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
@@ -117,12 +108,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
         }
     }
-    if args.dry_run {
+    if args.run.dry_run {
         return plan(args, context, &batch, &todo);
     }
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
-    let results: Vec<Result<Made, Failure>> = pool(args.threads)?.install(|| {
+    let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
         let results = todo.par_iter().map(|(job, overwrite)| {
             let result = make(job, *overwrite, bars);
             counter.one_more();
@@ -311,7 +302,7 @@ fn tell(
     skipped: usize,
 ) -> Result<(), Failure> {
     let manifest = batch.manifest.as_deref().map(shown);
-    if args.json {
+    if args.run.json {
         let version = env!("CARGO_PKG_VERSION");
         let document = serde_json::json!({
             "version": version, "skipped": skipped, "leaves": list, "manifest": manifest

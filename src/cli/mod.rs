@@ -15,6 +15,7 @@ mod morph;
 mod output_args;
 mod presets;
 mod progress;
+mod run_args;
 mod seeds;
 mod shell;
 

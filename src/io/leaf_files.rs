@@ -9,7 +9,7 @@ use super::manifest::{FileRecord, Manifest, SideMapping};
 use super::map_files::{self, MapFile, Pictures, Texts};
 use super::tables::Table;
 use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
-use super::{dxf, file_stem, glb, graph, graphml, obj, svg, usda};
+use super::{dxf, file_stem, glb, graph, graphml, obj, remains, svg, usda};
 use crate::margin::Margin;
 use crate::seed::Seed;
 use crate::spec::Output;
@@ -30,7 +30,7 @@ pub struct LeafFiles<'a> {
     pub margin: &'a Margin,
     /// Its veins.
     pub venation: &'a Venation,
-    /// Its pictures.
+    /// Its pictures. Where they show gaps, only what is left of the veins is written.
     pub textures: &'a TextureSet,
     /// The resolved settings.
     pub spec_toml: &'a str,
@@ -56,6 +56,9 @@ pub fn file_names(name: &str, size_px: usize, output: &Output) -> Vec<String> {
 #[must_use]
 pub fn encode_leaf(leaf: &LeafFiles<'_>) -> Vec<(String, Vec<u8>)> {
     let sheet = Sheet::of(leaf.output.card, &leaf.textures.front.base_colour);
+    let unreached = leaf.venation.unreached().total();
+    let remaining = remains::remaining(leaf.venation, &leaf.textures.rings);
+    let leaf = &LeafFiles { venation: remaining.as_ref().unwrap_or(leaf.venation), ..*leaf };
     let work = Work { leaf, pictures: Pictures::new(leaf.textures, leaf.output), sheet };
     let entries = entries(leaf.name, leaf.textures.front.size(), leaf.output);
     let encoded: Vec<((String, Vec<u8>), FileRecord)> = entries
@@ -67,7 +70,8 @@ pub fn encode_leaf(leaf: &LeafFiles<'_>) -> Vec<(String, Vec<u8>)> {
         })
         .collect();
     let (mut files, records): (Vec<_>, Vec<_>) = encoded.into_iter().unzip();
-    files.push((MANIFEST_FILE.to_owned(), leaf.manifest(records).to_json().into_bytes()));
+    files
+        .push((MANIFEST_FILE.to_owned(), leaf.manifest(records, unreached).to_json().into_bytes()));
     files
 }
 
@@ -240,7 +244,7 @@ impl LeafFiles<'_> {
         })
     }
 
-    fn manifest(&self, files: Vec<FileRecord>) -> Manifest {
+    fn manifest(&self, files: Vec<FileRecord>, unreached_sources: usize) -> Manifest {
         let uv_from_mm = SideMapping::of(&self.textures.frame);
         Manifest {
             version: 1,
@@ -261,7 +265,7 @@ impl LeafFiles<'_> {
             apex: uv_from_mm.place(self.margin.apex()),
             uv_from_mm,
             nodes: self.venation.graph().len(),
-            unreached_sources: self.venation.unreached().total(),
+            unreached_sources,
             files,
         }
     }

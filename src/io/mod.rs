@@ -22,6 +22,7 @@ pub mod mask;
 pub mod network;
 pub mod obj;
 pub mod outline;
+mod remains;
 pub mod silhouettes;
 pub mod svg;
 pub mod tables;

@@ -58,9 +58,16 @@ impl Tint {
     }
 }
 
+/// A share 0–1 in 16 bits, rounded.
+#[must_use]
+#[inline(always)]
+pub fn word(share: f32) -> u16 {
+    (share * 65535.0 + 0.5) as u16
+}
+
 /// A share 0–1 as a byte, rounded.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn byte(share: f32) -> u8 {
     (share * 255.0 + 0.5) as u8
 }

@@ -148,9 +148,12 @@ impl Capsule {
 /// The share of a window of half-width `half`, at `distance` from the axis of a long stroke of
 /// radius `radius`, that the stroke fills. Strokes thinner than the window fade, not vanish.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn stroke_share(distance: f32, radius: f32, half: f32) -> f32 {
-    let overlap = (distance + half).min(radius) - (distance - half).max(-radius);
+    let (far, near) = (distance + half, distance - half);
+    // Not `min` and `max`, which ask for what is not a number.
+    let end = if far < radius { far } else { radius };
+    let overlap = end - if near > -radius { near } else { -radius };
     (overlap / (2.0 * half)).clamp(0.0, 1.0)
 }
 

@@ -22,16 +22,60 @@ pub fn nearest_sites(
     height: usize,
     is_site: impl Fn(usize) -> bool + Sync,
 ) -> Grid<u32> {
-    assert!(width.max(height) <= 1 << 14, "squared distances need to fit 32 bits");
-    let column_sites = nearest_in_columns(width, height, &is_site);
+    let rows = NearestByRows::new(width, height, is_site);
     let mut nearest = Grid::filled(width, height, NO_SITE);
     nearest.values_mut().par_chunks_mut(width.max(1)).enumerate().for_each_init(
-        || Vec::with_capacity(width),
+        Envelope::default,
         |envelope, (y, row)| {
-            row_envelope(&column_sites[y * width..(y + 1) * width], y as i32, envelope, row);
+            rows.runs(y, envelope, |run, site| row[run].fill(site));
         },
     );
     nearest
+}
+
+/// The nearest sites as runs of pixels of a row that have one in common: for pictures of which only
+/// some pixels are asked for, and which would be large if written down.
+#[derive(Debug)]
+pub struct NearestByRows {
+    width: usize,
+    /// For every pixel the row of the nearest site in its column.
+    column_sites: Vec<u16>,
+}
+
+/// What [`NearestByRows::runs`] uses from row to row.
+#[derive(Debug, Default)]
+pub struct Envelope(Vec<Parabola>);
+
+impl NearestByRows {
+    /// The sites of a picture.
+    ///
+    /// # Panics
+    ///
+    /// If a side is longer than 16 384: squared distances would leave 32 bits.
+    #[must_use]
+    pub fn new(width: usize, height: usize, is_site: impl Fn(usize) -> bool + Sync) -> Self {
+        assert!(width.max(height) <= 1 << 14, "squared distances need to fit 32 bits");
+        Self { width, column_sites: nearest_in_columns(width, height, &is_site) }
+    }
+
+    /// Calls `each` with every run of row `y`, from left to right, and the index of its site. There is
+    /// no run where there is no site.
+    pub fn runs(
+        &self,
+        y: usize,
+        envelope: &mut Envelope,
+        mut each: impl FnMut(std::ops::Range<usize>, u32),
+    ) {
+        let sites = &self.column_sites[y * self.width..(y + 1) * self.width];
+        lower_envelope(sites, y as i32, &mut envelope.0);
+        let parabolas = &envelope.0;
+        for (i, parabola) in parabolas.iter().enumerate() {
+            let end = parabolas.get(i + 1).map_or(self.width as i32, |next| next.from);
+            let column = parabola.column as usize;
+            let site = u32::from(sites[column]) * self.width as u32 + column as u32;
+            each(parabola.from as usize..end as usize, site);
+        }
+    }
 }
 
 const NO_ROW: u16 = u16::MAX;
@@ -68,13 +112,14 @@ fn nearest_in_columns(
 }
 
 /// One parabola of the lower envelope: its column, squared height, and where it begins to be least.
+#[derive(Debug)]
 struct Parabola {
     column: i32,
     height: i32,
     from: i32,
 }
 
-fn row_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>, nearest: &mut [u32]) {
+fn lower_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>) {
     let width = sites.len() as i32;
     envelope.clear();
     for (x, &site) in sites.iter().enumerate() {
@@ -97,12 +142,6 @@ fn row_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>, nearest: &m
         if from < width {
             envelope.push(Parabola { column, height, from: from.max(0) });
         }
-    }
-    for (i, parabola) in envelope.iter().enumerate() {
-        let end = envelope.get(i + 1).map_or(width, |next| next.from);
-        let site =
-            u32::from(sites[parabola.column as usize]) * width as u32 + parabola.column as u32;
-        nearest[parabola.from as usize..end as usize].fill(site);
     }
 }
 

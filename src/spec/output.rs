@@ -242,6 +242,7 @@ impl Output {
         if self.bits == 16 {
             // Fine normals are made from heights.
             maps.push(MapKind::Height);
+            return MapSet::of(&maps).deep();
         }
         MapSet::of(&maps)
     }

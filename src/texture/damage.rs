@@ -103,12 +103,6 @@ pub(super) struct WoundAt {
     pub injury: Injury,
 }
 
-impl WoundAt {
-    /// Sound tissue.
-    pub(super) const NONE: Self =
-        Self { gone: 0.0, bare: FAR_MM, injury: Injury { brown: 0.0, pale: 0.0 } };
-}
-
 impl Wounds {
     /// The wounds of a leaf; `None` where nothing has happened.
     pub(super) fn new(

@@ -1,14 +1,100 @@
 //! Maps with 16 bits a channel.
 //!
-//! Heights and thickness are kept with 16 bits, and normals are made from heights anew, so these three
-//! are as fine as the numbers say. The other planes are kept with 8 bits and only widened (0–255 to
-//! 0–65535, ends on ends): for programs that take nothing else.
+//! Heights and thickness always have them, and fine normals are made from heights anew. Colours and
+//! shares are painted as real numbers; where 16 bits are asked for they are kept so, beside the 8 bits
+//! that the preview and the cards take. What is made from 8 bits, smaller levels and enhanced colours, is
+//! widened (0–255 to 0–65535, ends on ends).
 
 use rayon::prelude::*;
 
-use super::map::MapKind;
+use super::dilation::Empty;
+use super::map::{MapKind, MapSet};
 use super::normals;
 use super::side::SideMaps;
+use crate::raster::Grid;
+
+/// The planes of one side with 16 bits a channel; each has its map's size, or none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deep {
+    /// Base colour and coverage.
+    pub base_colour: Grid<[u16; 4]>,
+    /// Perceptual roughness.
+    pub roughness: Grid<u16>,
+    /// Ambient light that reaches the surface.
+    pub occlusion: Grid<u16>,
+    /// Share of the scattered light that comes out on the far side.
+    pub transmission: Grid<u16>,
+    /// Colour of the light that comes through.
+    pub translucency: Grid<[u16; 3]>,
+    /// How much of the texel is vein.
+    pub vein_mask: Grid<u16>,
+}
+
+impl Deep {
+    /// The planes of no leaf; `None` where 16 bits are not wanted.
+    pub(super) fn empty(size: usize, maps: MapSet) -> Option<Box<Self>> {
+        fn plane<T: Clone>(size: usize, maps: MapSet, map: MapKind, value: T) -> Grid<T> {
+            let side = if maps.has(map) { size } else { 0 };
+            Grid::filled(side, side, value)
+        }
+        maps.is_deep().then(|| {
+            Box::new(Self {
+                base_colour: Grid::filled(size, size, [0; 4]),
+                roughness: plane(size, maps, MapKind::Roughness, 0),
+                occlusion: plane(size, maps, MapKind::AmbientOcclusion, u16::MAX),
+                transmission: plane(size, maps, MapKind::Orm, 0),
+                translucency: plane(size, maps, MapKind::Translucency, [0; 3]),
+                vein_mask: plane(size, maps, MapKind::VeinMask, 0),
+            })
+        })
+    }
+
+    /// As [`SideMaps::spread`].
+    pub(super) fn spread(&mut self, empty: &Empty) {
+        empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {
+            texels.fill([r, g, b, 0]);
+        });
+        empty.fill(self.roughness.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
+    }
+
+    /// The bytes of a map, row by row, high bytes first; `None` for one that has no plane here.
+    fn samples(&self, map: MapKind) -> Option<Vec<u8>> {
+        let smooth = |&rough: &u16| u16::MAX - rough;
+        Some(match map {
+            MapKind::BaseColour => bytes(&self.base_colour, |&texel| texel),
+            MapKind::Opacity => bytes(&self.base_colour, |&[.., alpha]| [alpha; 2]),
+            MapKind::Roughness => bytes(&self.roughness, |&rough| [rough]),
+            MapKind::Gloss => bytes(&self.roughness, |rough| [smooth(rough)]),
+            MapKind::AmbientOcclusion => bytes(&self.occlusion, |&open| [open]),
+            MapKind::Translucency => bytes(&self.translucency, |&texel| texel),
+            MapKind::VeinMask => bytes(&self.vein_mask, |&cover| [cover]),
+            MapKind::MaskMap => {
+                let texels = self.occlusion.values().par_iter().zip(self.roughness.values());
+                big_endian(texels.map(|(&open, rough)| [0, open, 1 << 15, smooth(rough)]))
+            }
+            MapKind::Orm => {
+                let texels = (self.occlusion.values(), self.roughness.values())
+                    .into_par_iter()
+                    .zip(self.transmission.values());
+                big_endian(texels.map(|((&open, &rough), &through)| [open, rough, 0, through]))
+            }
+            _ => return None,
+        })
+    }
+}
+
+fn bytes<T: Sync, const N: usize>(
+    plane: &Grid<T>,
+    channels: impl Fn(&T) -> [u16; N] + Sync + Send,
+) -> Vec<u8> {
+    big_endian(plane.values().par_iter().map(channels))
+}
+
+fn big_endian<const N: usize>(texels: impl ParallelIterator<Item = [u16; N]>) -> Vec<u8> {
+    texels.flat_map_iter(|texel| texel.into_iter().flat_map(u16::to_be_bytes)).collect()
+}
 
 impl MapKind {
     /// Bits of a channel when `asked` (8 or 16) are wanted: heights and thickness always have 16, orders,
@@ -34,7 +120,9 @@ impl SideMaps {
         match map {
             MapKind::Normal if self.has(MapKind::Height) => self.fine_normals(per_texel, false),
             MapKind::NormalDx if self.has(MapKind::Height) => self.fine_normals(per_texel, true),
-            _ => self.samples(map).into_par_iter().flat_map_iter(|byte| [byte, byte]).collect(),
+            _ => self.deep.as_ref().and_then(|deep| deep.samples(map)).unwrap_or_else(|| {
+                self.samples(map).into_par_iter().flat_map_iter(|byte| [byte, byte]).collect()
+            }),
         }
     }
 

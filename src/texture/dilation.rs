@@ -1,26 +1,101 @@
 //! Spreads a leaf over the empty texels around it, so that filters and mipmaps find leaf there.
 //!
-//! The source is the nearest fully covered texel: half-covered ones would smear the fringe.
+//! The source is the nearest fully covered texel: half-covered ones would smear the fringe. Texels in
+//! a row that have their source in common are filled together.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
 
 use super::side::SideMaps;
-use crate::raster::distance::{NO_SITE, nearest_sites};
+use crate::raster::distance::{Envelope, NearestByRows};
+
+/// Empty texels of one row, and where what fills them is found.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    start: u16,
+    end: u16,
+    /// Index of the texel, row by row.
+    source: u32,
+}
+
+/// The empty texels of a picture.
+#[derive(Debug)]
+pub(super) struct Empty {
+    size: usize,
+    runs: Vec<Run>,
+    /// Where the runs of each row begin, and where the last ends.
+    rows: Vec<usize>,
+    mirrored: bool,
+}
 
 /// Fills both sides of a leaf, which cover the same texels, the back mirrored.
 pub(super) fn spread(front: &mut SideMaps, back: &mut SideMaps) {
-    let size = front.size();
-    let alpha = |i: usize, side: &SideMaps| side.base_colour.values()[i][3];
-    let nearest = nearest_sites(size, size, |i| alpha(i, front) == u8::MAX);
-    // Who needs a source is written down first, so that the planes are free to change.
-    let sources: Vec<u32> = nearest
-        .values()
-        .iter()
-        .enumerate()
-        .map(|(i, &site)| if alpha(i, front) == 0 { site } else { NO_SITE })
-        .collect();
-    drop(nearest);
-    let from =
-        |i: usize| Some(sources[i]).filter(|&site| site != NO_SITE).map(|site| site as usize);
-    front.spread(from);
-    let mirrored = |i: usize| i - i % size + size - 1 - i % size;
-    back.spread(|i| from(mirrored(i)).map(mirrored));
+    let mut empty = Empty::of(front);
+    front.spread(&empty);
+    empty.mirrored = true;
+    back.spread(&empty);
+}
+
+impl Empty {
+    fn of(side: &SideMaps) -> Self {
+        let size = side.size();
+        let colours = &side.base_colour;
+        let nearest = NearestByRows::new(size, size, |i| colours.values()[i][3] == u8::MAX);
+        let of_row = |envelope: &mut Envelope, y: usize| {
+            let row = colours.row(y);
+            let mut runs = Vec::new();
+            nearest.runs(y, envelope, |columns, source| {
+                let mut rest = columns;
+                while let Some(gap) = gap(row, rest.clone()) {
+                    rest.start = gap.end;
+                    runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
+                }
+            });
+            runs
+        };
+        let rows: Vec<Vec<Run>> =
+            (0..size).into_par_iter().map_init(Envelope::default, of_row).collect();
+        let starts = std::iter::once(0).chain(rows.iter().scan(0, |sum, row| {
+            *sum += row.len();
+            Some(*sum)
+        }));
+        Self { size, rows: starts.collect(), runs: rows.concat(), mirrored: false }
+    }
+
+    /// Fills the empty texels of a plane; `put` lays the source's value.
+    pub(super) fn fill<T: Copy + Send + Sync>(
+        &self,
+        plane: &mut [T],
+        put: impl Fn(&mut [T], T) + Sync,
+    ) {
+        if plane.is_empty() {
+            return;
+        }
+        // What is copied is written down first, so that the plane is free to change.
+        let mirrored = |i: usize| i - i % self.size + self.size - 1 - i % self.size;
+        let source = |run: &Run| {
+            let i = run.source as usize;
+            plane[if self.mirrored { mirrored(i) } else { i }]
+        };
+        let values: Vec<T> = self.runs.par_iter().map(source).collect();
+        plane.par_chunks_mut(self.size).enumerate().for_each(|(y, row)| {
+            let of_row = self.rows[y]..self.rows[y + 1];
+            for (run, &value) in self.runs[of_row.clone()].iter().zip(&values[of_row]) {
+                let (start, end) = (usize::from(run.start), usize::from(run.end));
+                let texels =
+                    if self.mirrored { self.size - end..self.size - start } else { start..end };
+                put(&mut row[texels], value);
+            }
+        });
+    }
+}
+
+/// The first texels in a row, within some columns, that are empty.
+fn gap(row: &[[u8; 4]], columns: Range<usize>) -> Option<Range<usize>> {
+    let texels = &row[columns.clone()];
+    let start = texels.iter().position(|texel| texel[3] == 0)?;
+    let length = texels[start..].iter().position(|texel| texel[3] != 0);
+    let end = length.map_or(columns.end, |length| columns.start + start + length);
+    Some(columns.start + start..end)
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::side::SideMaps;
 use crate::geometry::noise;
 use crate::raster::Grid;
-use crate::raster::color::byte;
+use crate::raster::color::{byte, word};
 
 /// Veins are thickened by this on either side (mm), at least one pixel.
 const THICKENED_MM: f32 = 0.08;
@@ -96,6 +96,13 @@ pub(super) fn replace(side: &mut SideMaps, steps: &Steps) {
     for (texel, step) in texels.filter(|(texel, _)| texel[3] > 0) {
         let [r, g, b] = step.map(byte);
         *texel = [r, g, b, texel[3]];
+    }
+    let Some(deep) = &mut side.deep else { return };
+    for (texel, step) in deep.base_colour.values_mut().iter_mut().zip(steps[5].values()) {
+        if texel[3] > 0 {
+            let [r, g, b] = step.map(word);
+            *texel = [r, g, b, texel[3]];
+        }
     }
 }
 

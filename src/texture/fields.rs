@@ -6,13 +6,9 @@
 
 use std::ops::Range;
 
-use glam::Vec2;
-
 use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
-
-pub(super) use super::guide::Place;
 
 /// Half the window through which a texel sees a vein (px). At 0.5 a slanted vein finer than a
 /// texel falls into dashes; at 1 everything is soft.
@@ -37,9 +33,19 @@ const TIP: f64 = 0.35;
 /// The veins of a leaf as strokes on its texture (pixels).
 #[derive(Debug)]
 pub(super) struct Strokes {
-    capsules: Vec<Capsule>,
-    orders: Vec<u8>,
-    pixels_per_mm: f32,
+    strokes: Vec<Stroke>,
+    /// Which of them pass through each band of rows: `at[starts[i]..starts[i + 1]]`.
+    at: Vec<u32>,
+    starts: Vec<usize>,
+    mm: f32,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Stroke {
+    capsule: Capsule,
+    order: u8,
+    /// Farther from its axis nothing of it is found (px).
+    reach: f32,
 }
 
 /// What the veins are at one texel.
@@ -53,13 +59,47 @@ pub(super) struct VeinAt {
     pub dome: f32,
     /// Depth of a wide smooth groove along the veins (mm).
     pub groove: f32,
-    /// Order of the vein here, 0 for none; of several the lowest.
-    pub order: u8,
+}
+
+/// What the veins are over some rows, row by row; see [`VeinAt`].
+#[derive(Debug, Default)]
+pub(super) struct VeinRows {
+    pub width: usize,
+    pub cover: Vec<f32>,
+    pub radius: Vec<f32>,
+    pub dome: Vec<f32>,
+    pub groove: Vec<f32>,
+    /// Order of the vein, 0 for none; of several the lowest.
+    pub order: Vec<u8>,
+    /// How much of a texel's vein is seen; of two veins the one that shows more counts.
+    shows: Vec<f32>,
+}
+
+impl VeinRows {
+    /// Empty rows.
+    fn clear(&mut self, width: usize, rows: usize) {
+        self.width = width;
+        let planes =
+            [&mut self.cover, &mut self.radius, &mut self.dome, &mut self.groove, &mut self.shows];
+        for plane in planes {
+            plane.clear();
+            plane.resize(width * rows, 0.0);
+        }
+        self.order.clear();
+        self.order.resize(width * rows, 0);
+    }
 }
 
 impl Strokes {
-    /// The veins of a leaf whose midrib starts with the radius `neck` (mm).
-    pub(super) fn new(venation: &Venation, neck: f64, frame: &TextureFrame, size: usize) -> Self {
+    /// The veins of a leaf whose midrib starts with the radius `neck` (mm), sorted into bands of so
+    /// many rows.
+    pub(super) fn new(
+        venation: &Venation,
+        neck: f64,
+        frame: &TextureFrame,
+        size: usize,
+        band: usize,
+    ) -> Self {
         let pixels_per_mm = frame.pixels_per_mm(size);
         let at = |node: u32| {
             frame.pixel_from_leaf(venation.graph().positions()[node as usize], size).as_vec2()
@@ -83,30 +123,70 @@ impl Strokes {
         });
         let edges = venation.graph().edges().map(|(_, child)| child);
         let loops = venation.graph().joins().iter().map(|&(_, b)| b);
-        Self {
-            capsules: grown.chain(joined).collect(),
-            orders: edges.chain(loops).map(|node| venation.orders()[node as usize]).collect(),
-            pixels_per_mm: pixels_per_mm as f32,
-        }
+        let orders = edges.chain(loops).map(|node| venation.orders()[node as usize]);
+        let strokes: Vec<Stroke> = grown
+            .chain(joined)
+            .zip(orders)
+            .map(|(capsule, order)| {
+                let widest = capsule.widest();
+                let reach = (GROOVE_RADII * widest).max(widest + LEAST_HALF_PX);
+                Stroke { capsule, order, reach }
+            })
+            .collect();
+        let (starts, at) = sorted(&strokes, size, band);
+        Self { strokes, at, starts, mm: (1.0 / pixels_per_mm) as f32 }
     }
 
-    /// The veins over some rows of the texture, row by row.
-    pub(super) fn rows(&self, width: usize, rows: Range<usize>) -> Vec<VeinAt> {
-        let mut texels = vec![VeinAt::default(); width * rows.len()];
-        let mm = 1.0 / self.pixels_per_mm;
-        for (capsule, &order) in self.capsules.iter().zip(&self.orders) {
-            let reach = (GROOVE_RADII * capsule.widest()).max(capsule.widest() + LEAST_HALF_PX);
-            let [columns, lines] = capsule.pixels(reach, width, rows.clone());
+    /// The veins over a band of rows of the texture.
+    #[inline(always)]
+    pub(super) fn fill(&self, band: usize, rows: Range<usize>, width: usize, out: &mut VeinRows) {
+        out.clear(width, rows.len());
+        for &stroke in &self.at[self.starts[band]..self.starts[band + 1]] {
+            let stroke = &self.strokes[stroke as usize];
+            let [columns, lines] = stroke.capsule.pixels(stroke.reach, width, rows.clone());
             for y in lines {
-                let row = &mut texels[(y - rows.start) * width..][..width];
-                for x in columns.clone() {
-                    let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                    row[x].add(capsule, order, centre, mm);
-                }
+                let across = stroke.columns(y, columns.clone());
+                let line = (y - rows.start) * width;
+                let texels = line + across.start..line + across.end;
+                let (x, y) = (across.start as i32, y as f32 + 0.5);
+                let VeinRows { cover, radius, dome, groove, order, shows, .. } = &mut *out;
+                stroke.draw(
+                    (x, y, self.mm),
+                    &mut cover[texels.clone()],
+                    &mut radius[texels.clone()],
+                    &mut dome[texels.clone()],
+                    &mut groove[texels.clone()],
+                    &mut shows[texels.clone()],
+                    &mut order[texels],
+                );
             }
         }
-        texels
     }
+}
+
+/// Which strokes pass through each band: where each band's begin, and their numbers in order.
+fn sorted(strokes: &[Stroke], size: usize, band: usize) -> (Vec<usize>, Vec<u32>) {
+    let bands = |stroke: &Stroke| {
+        let [_, lines] = stroke.capsule.pixels(stroke.reach, size, 0..size);
+        if lines.is_empty() { 0..0 } else { lines.start / band..lines.end.div_ceil(band) }
+    };
+    let mut starts = vec![0; size.div_ceil(band) + 1];
+    for stroke in strokes {
+        for i in bands(stroke) {
+            starts[i + 1] += 1;
+        }
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let (mut next, mut at) = (starts.clone(), vec![0; starts[starts.len() - 1]]);
+    for (number, stroke) in (0..).zip(strokes) {
+        for i in bands(stroke) {
+            at[next[i]] = number;
+            next[i] += 1;
+        }
+    }
+    (starts, at)
 }
 
 /// The nodes of the midrib, from the petiole: at each fork the widest child. Of several roots the
@@ -150,35 +230,69 @@ const NECK_RADII: f64 = 30.0;
 /// full radius would make a thorn of every fine branch on the midrib.
 pub(super) const BRANCH_FLARE: f64 = 1.3;
 
-impl VeinAt {
-    #[inline]
-    fn add(&mut self, capsule: &Capsule, order: u8, centre: Vec2, mm: f32) {
-        let (distance2, t) = capsule.nearest(centre);
-        let radius = capsule.radius(t);
-        let radius2 = radius * radius;
-        let wide = 1.0 - distance2 / (GROOVE_RADII * GROOVE_RADII * radius2);
-        if wide > 0.0 {
-            self.groove = self.groove.max(wide * wide * radius * mm);
+impl Stroke {
+    /// Of some columns those that can lie within reach in row `y`: a slanted stroke crosses few of its
+    /// box.
+    #[inline(always)]
+    fn columns(&self, y: usize, columns: Range<usize>) -> Range<usize> {
+        let along = self.capsule.b - self.capsule.a;
+        if along.y.abs() < 0.1 * along.x.abs() || along.y == 0.0 {
+            return columns;
         }
-        let half = (SOFT_EDGE * radius).max(LEAST_HALF_PX);
-        let outside = radius + half;
-        if distance2 >= outside * outside {
-            return;
-        }
-        let cover = stroke_share(distance2.sqrt(), radius, half);
-        // Of two veins the one that shows more: a fine branch inside its parent's soft edge loses.
-        let radius_mm = radius * mm;
-        let shows = |cover: f32, radius: f32| cover * radius / (radius + SHOWS_MM);
-        if shows(cover, radius_mm) > shows(self.cover, self.radius) {
-            (self.cover, self.radius) = (cover, radius_mm);
-        }
-        // No finer than the texels, so that a label never falls into dashes.
-        let labelled = radius.max(LEAST_LABEL_PX);
-        if distance2 < labelled * labelled && (self.order == 0 || order < self.order) {
-            self.order = order;
-        }
-        if distance2 < radius2 {
-            self.dome = self.dome.max((radius2 - distance2).sqrt() * mm);
+        // Where the axis, drawn out, has the height of the row, and how far aside the reach goes.
+        let middle = self.capsule.a.x + (y as f32 + 0.5 - self.capsule.a.y) * along.x / along.y;
+        let aside = self.reach * along.length() / along.y.abs() + 1.0;
+        let clip = |x: f32| (x.max(0.0) as usize).clamp(columns.start, columns.end);
+        clip(middle - aside)..clip(middle + aside + 1.0)
+    }
+
+    /// Draws on texels of one row, of which the first is column `x`; `y` is their centres' height.
+    /// Without a branch, so that several texels can be drawn at once.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "arrays apart from each other are what is quick")]
+    fn draw(
+        &self,
+        (x, y, mm): (i32, f32, f32),
+        cover: &mut [f32],
+        radius: &mut [f32],
+        dome: &mut [f32],
+        groove: &mut [f32],
+        shows: &mut [f32],
+        order: &mut [u8],
+    ) {
+        let Capsule { a, b, radius_a, radius_b } = self.capsule;
+        let along = b - a;
+        let length2 = along.length_squared();
+        let per_length2 = if length2 > 0.0 { 1.0 / length2 } else { 0.0 };
+        let dy = y - a.y;
+        let n = cover.len();
+        let (radius, dome, groove) = (&mut radius[..n], &mut dome[..n], &mut groove[..n]);
+        let (shows, order) = (&mut shows[..n], &mut order[..n]);
+        for i in 0..n {
+            let dx = (x + i as i32) as f32 + 0.5 - a.x;
+            let t = ((dx * along.x + dy * along.y) * per_length2).clamp(0.0, 1.0);
+            let (ex, ey) = (dx - along.x * t, dy - along.y * t);
+            let distance2 = ex * ex + ey * ey;
+            let here = radius_a + (radius_b - radius_a) * t;
+            let here2 = here * here;
+            let wide = (1.0 - distance2 / (GROOVE_RADII * GROOVE_RADII * here2)).max(0.0);
+            groove[i] = groove[i].max(wide * wide * here * mm);
+            dome[i] = dome[i].max((here2 - distance2).max(0.0).sqrt() * mm);
+            let half = (SOFT_EDGE * here).max(LEAST_HALF_PX);
+            let share = stroke_share(distance2.sqrt(), here, half);
+            // Of two veins the one that shows more: a fine branch inside its parent's soft edge
+            // loses.
+            let here_mm = here * mm;
+            let seen = share * here_mm / (here_mm + SHOWS_MM);
+            let more = seen > shows[i];
+            cover[i] = if more { share } else { cover[i] };
+            radius[i] = if more { here_mm } else { radius[i] };
+            shows[i] = if more { seen } else { shows[i] };
+            // No finer than the texels, so that a label never falls into dashes.
+            let labelled = here.max(LEAST_LABEL_PX);
+            let lowest = order[i] == 0 || self.order < order[i];
+            order[i] =
+                if lowest & (distance2 < labelled * labelled) { self.order } else { order[i] };
         }
     }
 }

@@ -257,9 +257,12 @@ impl MapKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapSet(u32);
 
+/// Set where 16 bits are wanted; maps have the bits below.
+const DEEP: u32 = 1 << 31;
+
 impl MapSet {
-    /// Every map.
-    pub const ALL: Self = Self(u32::MAX);
+    /// Every map, with 8 bits a channel where 16 are not its own.
+    pub const ALL: Self = Self(DEEP - 1);
 
     /// The planes that these maps need.
     #[must_use]
@@ -296,10 +299,28 @@ impl MapSet {
         Self(maps.iter().map(needs).fold(bit(MapKind::BaseColour), |set, bits| set | bits))
     }
 
+    /// The set with every colour and share kept with 16 bits, too.
+    #[must_use]
+    pub const fn deep(self) -> Self {
+        Self(self.0 | DEEP)
+    }
+
+    /// Whether colours and shares are kept with 16 bits, too.
+    #[must_use]
+    pub const fn is_deep(self) -> bool {
+        self.0 & DEEP != 0
+    }
+
     /// The set with the plane of one map more.
     #[must_use]
     pub const fn with(self, map: MapKind) -> Self {
         Self(self.0 | (1 << map as u32))
+    }
+
+    /// The set without the plane of one map.
+    #[must_use]
+    pub const fn without(self, map: MapKind) -> Self {
+        Self(self.0 & !(1 << map as u32))
     }
 
     /// Whether the plane of this map is kept; for `Orm` its transmission.

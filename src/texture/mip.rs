@@ -125,6 +125,7 @@ impl Level {
                 // For people, and no smaller for being far away.
                 preview: Grid::from_values(0, 0, Vec::new()),
                 enhancement: Grid::from_values(0, 0, Vec::new()),
+                deep: None,
             },
             alpha,
         }

@@ -4,12 +4,13 @@
 //! empty texels, and reads normals and occlusion off the heights.
 //!
 //! A texel takes 19 bytes a side when every map of the default set is kept, so 8192² with both sides
-//! needs 2.6 GB, and 256 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
-//! rest is small beside it: 10 bytes a texel while the leaf is spread over the empty ones.
+//! needs 2.6 GB, and 540 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
+//! rest is small beside it: 2 bytes a texel while the leaf is spread over the empty ones.
 
 pub mod atlas;
+mod brush;
 pub mod damage;
-mod deep;
+pub mod deep;
 mod dilation;
 mod enhance;
 mod fields;
@@ -28,7 +29,7 @@ pub mod relief;
 mod scene;
 mod side;
 pub mod spectrum;
-mod texel;
+mod strip;
 mod tissue;
 
 use crate::margin::Margin;
@@ -126,7 +127,8 @@ pub fn paint(
     let per_mm = scene.frame().pixels_per_mm(scene.size) as f32;
     let per_texel = scene.height_range_mm() as f32 / 65535.0 * per_mm;
     for side in [&mut front, &mut back] {
-        if side.has(MapKind::Normal) {
+        if paint.maps.has(MapKind::Normal) {
+            side.normal = Grid::filled(scene.size, scene.size, [0; 3]);
             normals::fill(side, per_texel);
         }
         if side.has(MapKind::AmbientOcclusion) {

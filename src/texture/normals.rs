@@ -8,7 +8,7 @@ use crate::raster::Grid;
 /// The unit normal of a surface whose height rises by `dx` per unit to the right and by `dy` per
 /// unit up the picture.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn from_slopes(dx: f32, dy: f32) -> [f32; 3] {
     let scale = 1.0 / (1.0 + dx * dx + dy * dy).sqrt();
     [-dx * scale, -dy * scale, scale]
@@ -16,7 +16,7 @@ pub fn from_slopes(dx: f32, dy: f32) -> [f32; 3] {
 
 /// A unit vector as bytes: 0–255 for −1–1.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
     normal.map(|component| (component * 127.5 + 128.0) as u8)
 }
@@ -26,17 +26,77 @@ pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
 pub(super) fn fill(side: &mut SideMaps, per_texel: f32) {
     let size = side.size();
     let SideMaps { base_colour, height, normal, .. } = side;
-    normal.values_mut().par_chunks_mut(size.max(1)).enumerate().for_each(|(y, row)| {
-        let covered = base_colour.row(y);
-        for x in 0..size {
-            row[x] = if covered[x][3] == 0 {
-                FLAT
-            } else {
-                let (dx, dy) = slopes(height, x, y, per_texel);
-                encoded(from_slopes(dx, dy))
-            };
-        }
+    normal.values_mut().par_chunks_mut(size.max(1)).enumerate().for_each(|(y, normals)| {
+        let colours = base_colour.row(y);
+        pulp::Arch::new().dispatch(Row { y, colours, height, per_texel, normals });
     });
+}
+
+/// A row of normals to be filled.
+struct Row<'a> {
+    y: usize,
+    colours: &'a [[u8; 4]],
+    height: &'a Grid<u16>,
+    per_texel: f32,
+    normals: &'a mut [[u8; 3]],
+}
+
+/// Texels taken together.
+const LANES: usize = 64;
+
+impl pulp::WithSimd for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { y, colours, height, per_texel, normals } = self;
+        let size = normals.len();
+        let (row, last) = (height.row(y), height.height() - 1);
+        let (above, below) = (height.row(y.saturating_sub(1)), height.row((y + 1).min(last)));
+        let across = if y == 0 || y == last { per_texel } else { 0.5 * per_texel };
+        let at = |x: usize| encoded_slopes(height, x, y, per_texel);
+        for start in (0..size).step_by(LANES) {
+            let end = (start + LANES).min(size);
+            if colours[start..end].iter().all(|texel| texel[3] == 0) {
+                normals[start..end].fill(FLAT);
+                continue;
+            }
+            // Away from the border of the picture, texel by texel alike.
+            let inner = start.max(1)..end.min(size.max(1) - 1);
+            let mut steep = [[0.0_f32; LANES]; 2];
+            if !inner.is_empty() {
+                let n = inner.len();
+                let left = &row[inner.start - 1..][..n];
+                let right = &row[inner.start + 1..][..n];
+                let (up, down) = (&above[inner.clone()][..n], &below[inner.clone()][..n]);
+                let [dx, dy] = &mut steep;
+                for i in 0..n.min(LANES) {
+                    let rise = |to: u16, from: u16| (i32::from(to) - i32::from(from)) as f32;
+                    dx[i] = rise(right[i], left[i]) * (0.5 * per_texel);
+                    dy[i] = rise(up[i], down[i]) * across;
+                }
+                let mut bytes = [[0_u8; LANES]; 3];
+                for i in 0..LANES {
+                    let normal = encoded(from_slopes(dx[i], dy[i]));
+                    (bytes[0][i], bytes[1][i], bytes[2][i]) = (normal[0], normal[1], normal[2]);
+                }
+                for (i, texel) in normals[inner.clone()].iter_mut().enumerate() {
+                    *texel = [bytes[0][i], bytes[1][i], bytes[2][i]];
+                }
+            }
+            for x in (start..inner.start).chain(inner.end.max(inner.start)..end) {
+                normals[x] = at(x);
+            }
+            for (normal, colour) in normals[start..end].iter_mut().zip(&colours[start..end]) {
+                *normal = if colour[3] == 0 { FLAT } else { *normal };
+            }
+        }
+    }
+}
+
+fn encoded_slopes(height: &Grid<u16>, x: usize, y: usize, per_texel: f32) -> [u8; 3] {
+    let (dx, dy) = slopes(height, x, y, per_texel);
+    encoded(from_slopes(dx, dy))
 }
 
 /// How much the surface rises from texel to texel, to the right and up the picture. One step of a

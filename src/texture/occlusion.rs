@@ -6,9 +6,13 @@
 //! occlusion", 2008, with the normal upright). Row by row and tap by tap, so that the compiler can
 //! take several texels at once.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::side::SideMaps;
+use crate::raster::Grid;
+use crate::raster::color::{byte, word};
 
 /// Where the horizon is looked for (mm): the flank of a vein, and the width of an areole.
 const REACH_MM: [f32; 2] = [0.12, 0.45];
@@ -24,47 +28,32 @@ const EMPHASIS: f32 = 1.6;
 /// height is `per_texel` texels high, and `per_mm` texels make a millimetre.
 pub(super) fn fill(side: &mut SideMaps, per_texel: f32, per_mm: f32) {
     let size = side.size();
-    let SideMaps { base_colour, height, occlusion, .. } = side;
     let steps = REACH_MM.map(|mm| ((mm * per_mm + 0.5) as usize).clamp(1, size.max(2) - 1));
-    let fill_row = |(horizon, sum): &mut (Vec<f32>, Vec<f32>), (y, row): (usize, &mut [u8])| {
-        let covered = |texel: &[u8; 4]| texel[3] > 0;
+    let SideMaps { base_colour, height, occlusion, deep, .. } = side;
+    fill_plane(occlusion, (base_colour, height), steps, per_texel, byte);
+    if let Some(deep) = deep {
+        fill_plane(&mut deep.occlusion, (base_colour, height), steps, per_texel, word);
+    }
+}
+
+/// Fills a plane whose values `of` shares are, where the leaf is.
+fn fill_plane<T: Copy + Send>(
+    occlusion: &mut Grid<T>,
+    (base_colour, height): (&Grid<[u8; 4]>, &Grid<u16>),
+    steps: [usize; 2],
+    per_texel: f32,
+    of: fn(f32) -> T,
+) {
+    let size = height.width();
+    let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [T])| {
         let colours = base_colour.row(y);
         let Some(first) = colours.iter().position(covered) else { return };
-        let last = colours.iter().rposition(covered).expect("there is a first");
-        let here = height.row(y);
-        sum[first..=last].fill(0.0);
-        for (dx, dy) in DIRECTIONS {
-            horizon[first..=last].fill(0.0);
-            for step in steps {
-                let length =
-                    step as f32 * if dx * dy == 0 { 1.0 } else { std::f32::consts::SQRT_2 };
-                let scale = EMPHASIS * per_texel / length;
-                let shift = step as isize * dx as isize;
-                let line = y as isize + step as isize * dy as isize;
-                if line < 0 || line >= size as isize {
-                    continue;
-                }
-                let there = height.row(line as usize);
-                let from = (first as isize).max(-shift) as usize;
-                let to = ((last + 1) as isize).min(size as isize - shift).max(0) as usize;
-                if from >= to {
-                    continue;
-                }
-                let (start, end) = (from as isize + shift, to as isize + shift);
-                let others = &there[start as usize..end as usize];
-                let own = &here[from..to];
-                for ((horizon, &own), &other) in horizon[from..to].iter_mut().zip(own).zip(others) {
-                    let slope = (i32::from(other) - i32::from(own)) as f32 * scale;
-                    *horizon = horizon.max(slope);
-                }
-            }
-            for (sum, &slope) in sum[first..=last].iter_mut().zip(&horizon[first..=last]) {
-                *sum += slope * slope / (1.0 + slope * slope);
-            }
-        }
-        for x in first..=last {
+        let end = colours.iter().rposition(covered).expect("there is a first") + 1;
+        let work = Row { y, columns: first..end, height, steps, per_texel, sum };
+        pulp::Arch::new().dispatch(work);
+        for x in first..end {
             if covered(&colours[x]) {
-                row[x] = (255.5 - 255.0 * sum[x] / DIRECTIONS.len() as f32) as u8;
+                row[x] = of(1.0 - sum[x] / DIRECTIONS.len() as f32);
             }
         }
     };
@@ -72,7 +61,89 @@ pub(super) fn fill(side: &mut SideMaps, per_texel: f32, per_mm: f32) {
         .values_mut()
         .par_chunks_mut(size.max(1))
         .enumerate()
-        .for_each_init(|| (vec![0.0; size], vec![0.0; size]), fill_row);
+        .for_each_init(|| vec![0.0; size], fill_row);
+}
+
+fn covered(texel: &[u8; 4]) -> bool {
+    texel[3] > 0
+}
+
+/// Columns of a row of which is found how much light the relief hides, in all directions.
+struct Row<'a> {
+    y: usize,
+    columns: Range<usize>,
+    height: &'a Grid<u16>,
+    steps: [usize; 2],
+    per_texel: f32,
+    sum: &'a mut [f32],
+}
+
+impl pulp::WithSimd for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { y, columns, height, steps, per_texel, sum } = self;
+        let (first, end, size) = (columns.start, columns.end, height.width());
+        sum[first..end].fill(0.0);
+        for (dx, dy) in DIRECTIONS {
+            let length = if dx * dy == 0 { 1.0 } else { std::f32::consts::SQRT_2 };
+            // Where the farther look stays in the picture the nearer one does.
+            let reach = |step: usize| {
+                let (shift, line) = (step as i32 * dx, y as i32 + step as i32 * dy);
+                let inside = (0..height.height() as i32).contains(&line);
+                let from = (first as i32).max(-shift);
+                let to = (end as i32).min(size as i32 - shift);
+                inside.then_some((from.max(0) as usize..to.max(from).max(0) as usize, line, shift))
+            };
+            let scales = steps.map(|step| EMPHASIS * per_texel / (step as f32 * length));
+            let looks = steps.map(reach);
+            match looks {
+                [Some((near, near_line, near_shift)), Some((far, far_line, far_shift))]
+                    if !far.is_empty() =>
+                {
+                    let part = |line: i32, shift: i32, columns: &Range<usize>| {
+                        let start = (columns.start as i32 + shift) as usize;
+                        &height.row(line as usize)[start..start + columns.len()]
+                    };
+                    let one = |columns: Range<usize>, sum: &mut [f32]| {
+                        let others = part(near_line, near_shift, &columns);
+                        let own = &height.row(y)[columns.clone()];
+                        add_horizon(&mut sum[columns], own, [others, others], [scales[0]; 2]);
+                    };
+                    one(near.start..far.start.max(near.start), sum);
+                    one(far.end.min(near.end)..near.end, sum);
+                    let others =
+                        [part(near_line, near_shift, &far), part(far_line, far_shift, &far)];
+                    let own = &height.row(y)[far.clone()];
+                    add_horizon(&mut sum[far], own, others, scales);
+                }
+                [Some((near, line, shift)), _] if !near.is_empty() => {
+                    let start = (near.start as i32 + shift) as usize;
+                    let others = &height.row(line as usize)[start..start + near.len()];
+                    let own = &height.row(y)[near.clone()];
+                    add_horizon(&mut sum[near], own, [others, others], [scales[0]; 2]);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Adds what the horizon hides in one direction, from the heights at two distances.
+#[inline(always)]
+fn add_horizon(sum: &mut [f32], own: &[u16], others: [&[u16]; 2], scales: [f32; 2]) {
+    let n = sum.len();
+    let (own, near, far) = (&own[..n], &others[0][..n], &others[1][..n]);
+    for i in 0..n {
+        let rise = |other: u16| (i32::from(other) - i32::from(own[i])) as f32;
+        let (near, far) = (rise(near[i]) * scales[0], rise(far[i]) * scales[1]);
+        // Not `max`, which asks for what is not a number.
+        let higher = if near > far { near } else { far };
+        let slope = if higher > 0.0 { higher } else { 0.0 };
+        let slope2 = slope * slope;
+        sum[i] += slope2 / (1.0 + slope2);
+    }
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ impl Optics {
     }
 
     /// Front and back: veins a little smoother, the bottom of their grooves a little rougher.
-    #[inline]
+    #[inline(always)]
     pub(super) fn roughness(&self, ground: &Ground, dry: f32) -> [f32; 2] {
         let [broad, middle, _] = ground.place.noise;
         let uneven = self.uneven * (0.5 * ground.grain + 0.25 * middle + 0.15 * broad);
@@ -49,7 +49,7 @@ impl Optics {
 }
 
 /// The share of scattered light that goes on through, of both colours in sRGB (0–1): by luminance.
-#[inline]
+#[inline(always)]
 pub(super) fn transmitted_share(reflected: [f32; 3], through: [f32; 3]) -> f32 {
     // Squares stand in for sRGB's curve: the share is a ratio, in which the difference drops out.
     let luminance = |[r, g, b]: [f32; 3]| 0.2126 * r * r + 0.7152 * g * g + 0.0722 * b * b;

@@ -13,10 +13,13 @@ pub use amounts::{Amounts, PigmentSpec};
 pub(super) use season::{Condition, Course};
 pub use season::{SenescenceSpec, StateSpec};
 
+use super::brush::{Shade, Shades};
 use super::damage::Injury;
-use super::fields::{Place, VeinAt};
+use super::fields::VeinAt;
+use super::guide::Place;
 use super::petiole::StalkAt;
-use super::texel::Shade;
+use super::strip::Strip;
+
 use crate::parameter::{parameters, words};
 use crate::raster::color::Tint;
 
@@ -152,28 +155,28 @@ const SPREADING: [ColourType; 3] =
 impl Tissue {
     /// Weights of the colours from veins, from edges and from speckles. Where one gives out, tissue
     /// makes its front uneven; full strength and the reach stay where they are.
-    #[inline]
+    #[inline(always)]
     fn weights(&self, per_spread_mm: f32, mottle: f32) -> [f32; 3] {
         let [_, middle, fine] = self.place.noise;
-        let uneven = |w: f32| {
+        let uneven = |w: f32| -> f32 {
             (w + 2.0 * mottle * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0)
         };
         [
             uneven(self.place.from_veins),
-            uneven((1.0 - self.place.edge.max(0.0) * per_spread_mm).max(0.0)),
+            uneven((1.0 - self.place.edge.max(0.0) * per_spread_mm).max(0.0_f32)),
             uneven(self.place.speckle),
         ]
     }
 
     /// How far from the larger veins, 0 on one and 1 in the middle of a wide panel.
-    #[inline]
+    #[inline(always)]
     fn panel(&self) -> f32 {
         self.place.major * self.place.major / (self.place.major * self.place.major + 6.0)
     }
 
     /// Unevenness in lightness: broad patches, panels paler than the tissue along the larger veins,
     /// areoles that differ a little, grain.
-    #[inline]
+    #[inline(always)]
     fn unevenness(&self) -> f32 {
         let [broad, middle, fine] = self.place.noise;
         0.22 * broad
@@ -187,7 +190,7 @@ impl Tissue {
 
     /// How much of a side's veins is seen through its tissue: of the fine nets, here stronger, there
     /// weaker, and of the grown veins.
-    #[inline]
+    #[inline(always)]
     fn veins_seen(&self, face: &Face, mottle: f32) -> [f32; 2] {
         let [third, fourth, fifth] = face.lines;
         let fine = self.place.noise[2];
@@ -198,13 +201,13 @@ impl Tissue {
     }
 
     /// 1 on the crest of a vein, 0 at its foot.
-    #[inline]
+    #[inline(always)]
     fn roundness(&self) -> f32 {
         (self.vein.dome / self.vein.radius.max(1e-6)).min(1.0)
     }
 
     /// How much the tissue lines a vein.
-    #[inline]
+    #[inline(always)]
     fn flank(&self) -> f32 {
         self.vein.groove / (self.vein.groove + 0.12) * (1.0 - self.vein.cover)
     }
@@ -216,53 +219,51 @@ pub(super) enum Pigments {
     /// By amounts.
     Amounts(Box<amounts::Mixer>),
     /// As chosen, front and back.
-    Chosen(Box<[hsv::Chosen; 2]>),
+    Chosen(Box<hsv::Leaf>),
 }
 
 impl Pigments {
-    /// The petiole colours the midrib within `petiole_reach` of the base (mm).
+    /// The petiole colours the midrib within `petiole_reach` of the base (mm); `hurt` leaves have wounds.
     pub(super) fn new(
         spec: &ColourSpec,
         state: &StateSpec,
         petiole: &Hsv,
         petiole_reach: f32,
+        hurt: bool,
     ) -> Self {
         match spec.model {
             ColourModel::Pigments => {
                 Self::Amounts(Box::new(amounts::Mixer::new(spec, state, petiole, petiole_reach)))
             }
-            ColourModel::Hsv => Self::Chosen(Box::new(
-                [(&spec.front, FRONT), (&spec.back, BACK)]
-                    .map(|(side, face)| hsv::Chosen::new(spec, side, face, petiole, petiole_reach)),
-            )),
+            ColourModel::Hsv => {
+                Self::Chosen(Box::new(hsv::Leaf::new(spec, state, petiole, petiole_reach, hurt)))
+            }
         }
     }
 
     /// What is seen of both sides of the blade, and through them.
-    #[inline]
-    pub(super) fn blade(&self, tissue: &Tissue) -> [Shade; 2] {
+    #[inline(always)]
+    pub(super) fn paint(&self, strip: &Strip, shades: &mut [Shades; 2]) {
         match self {
-            Self::Amounts(mixer) => mixer.blade(tissue),
-            Self::Chosen(sides) => std::array::from_fn(|side| sides[side].blade(tissue)),
+            Self::Amounts(mixer) => mixer.paint(strip, shades),
+            Self::Chosen(leaf) => leaf.paint(strip, shades),
         }
     }
 
     /// What is seen of both sides of the petiole; it is the midrib's colour at the blade and browner
     /// at the stem.
-    #[inline]
+    #[inline(always)]
     pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> [Shade; 2] {
         match self {
             Self::Amounts(mixer) => mixer.stalk(stalk, length, grain),
-            Self::Chosen(sides) => {
-                std::array::from_fn(|side| sides[side].stalk(stalk, length, grain))
-            }
+            Self::Chosen(leaf) => leaf.stalk(stalk, length, grain),
         }
     }
 }
 
 /// A colour chosen by hand lets light of its own hue through: yellower, more saturated, and `share`
 /// as bright.
-#[inline]
+#[inline(always)]
 fn shade(tint: Tint, share: f32) -> Shade {
     let through = Tint {
         hue: tint.hue + 0.25 * (60.0 - tint.hue).clamp(-40.0, 0.0),

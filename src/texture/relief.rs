@@ -3,7 +3,8 @@
 //! Source: Foster, section 2.3.6, for what is high and low, and the bump map; amplitudes follow
 //! real leaves (a groove of 0.3–0.5 vein radii above, a cord of 1–1.5 below, quilting of 10–50 µm).
 
-use super::fields::{Place, VeinAt};
+use super::fields::VeinAt;
+use super::guide::Place;
 use super::petiole::StalkAt;
 use super::tissue::smooth;
 use crate::parameter::parameters;
@@ -86,7 +87,7 @@ impl Relief {
     }
 
     /// From front to back (mm): the lamina, and the veins in it, which are round.
-    #[inline]
+    #[inline(always)]
     pub(super) fn thickness(&self, ground: &Ground) -> f32 {
         self.lamina.max(2.0 * ground.vein.dome) + 0.5 * self.lamina * ground.vein.cover
     }
@@ -98,7 +99,7 @@ impl Relief {
     }
 
     /// Front and back.
-    #[inline]
+    #[inline(always)]
     pub(super) fn heights(&self, ground: &Ground) -> [f32; 2] {
         let Ground { place, vein, border, grain } = ground;
         let swell = |distance: f32, half: f32| {
@@ -116,7 +117,7 @@ impl Relief {
     }
 
     /// Front and back of the petiole, which runs into the groove and the cord of the midrib.
-    #[inline]
+    #[inline(always)]
     pub(super) fn stalk_heights(&self, stalk: &StalkAt) -> [f32; 2] {
         let free = smooth(0.0, 5.0, stalk.along / stalk.radius.max(1e-3));
         let dome = stalk.dome;
@@ -125,7 +126,7 @@ impl Relief {
     }
 
     /// Foster's bump of front and back: the blade at 128, veins lower in front and higher behind.
-    #[inline]
+    #[inline(always)]
     pub(super) fn bumps(&self, ground: &Ground) -> [f32; 2] {
         let vein = self.bump_of_vein(ground.vein.radius) * ground.vein.cover;
         let speckle = BUMP_SPECKLE * self.roughness * ground.grain;
@@ -139,7 +140,7 @@ impl Relief {
     }
 
     /// By the root of the radius: linear, all but the midrib would vanish in 8 bits.
-    #[inline]
+    #[inline(always)]
     fn bump_of_vein(&self, radius: f32) -> f32 {
         BUMP_VEIN * (radius / self.widest.max(1e-6)).min(1.0).sqrt()
     }

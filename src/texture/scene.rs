@@ -9,29 +9,36 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Paint;
-use super::damage::{WoundAt, Wounds};
-use super::fields::{Strokes, midrib};
+use super::brush::Painted;
+use super::damage::Wounds;
+use super::deep::Deep;
+use super::fields::{Strokes, VeinRows, midrib};
 use super::guide::{Guide, Lattice, Reach};
 use super::map::{MapKind, MapSet};
-use super::optics::{self, Optics};
+use super::optics::Optics;
 use super::petiole::{Stalk, StalkAt};
 use super::pigment::{Course, Pigments};
 use super::relief::Relief;
 use super::side::SideMaps;
-use super::texel::{Shade, Texel, Walker};
+use super::strip::{LANES, Strip, Structure};
 use super::tissue;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 use crate::raster::Grid;
-use crate::raster::color::byte;
+use crate::raster::color::{byte, word};
 use crate::raster::coverage::{Capsule, polygon_rows, stroke_share};
 use crate::seed::{Seed, Stage};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
-/// Rows painted at once: enough that a vein is not looked at again for every few rows, few enough
-/// that a band's fields stay in the cache of a core.
-const BAND: usize = 32;
+/// Rows painted at once on a texture of this side: enough that a vein is not looked at again for every
+/// few rows, few enough that what the veins are stays in the cache of a core.
+fn band_rows(size: usize) -> usize {
+    (BAND_TEXELS / size).clamp(8, 32)
+}
+
+/// At 21 bytes a texel 700 kB, in a cache of 1 MB.
+const BAND_TEXELS: usize = 1 << 15;
 
 /// A slit is open this wide (mm): the edges of torn tissue shrink back a little.
 const SLIT_MM: f64 = 0.15;
@@ -41,6 +48,7 @@ const NECK: f64 = 0.74;
 
 pub(super) struct Scene {
     pub(super) size: usize,
+    band: usize,
     pub(super) frame: TextureFrame,
     pub(super) per_mm: f32,
     outline: Vec<DVec2>,
@@ -69,6 +77,11 @@ struct SideRows<'a> {
     thickness: &'a mut [u16],
     vein_mask: &'a mut [u8],
     vein_order: &'a mut [u8],
+    deep_colour: &'a mut [[u16; 4]],
+    deep_roughness: &'a mut [u16],
+    deep_transmission: &'a mut [u16],
+    deep_translucency: &'a mut [[u16; 3]],
+    deep_vein_mask: &'a mut [u16],
 }
 
 impl Scene {
@@ -120,13 +133,15 @@ impl Scene {
             sun_deg,
         );
         let petiole_reach = 6.0 * neck as f32;
+        let band = band_rows(size);
         Self {
             size,
+            band,
             frame,
             per_mm: per_mm as f32,
             outline: margin.outline().iter().map(pixel).collect(),
             slits: slits.collect(),
-            strokes: Strokes::new(venation, neck, &frame, size),
+            strokes: Strokes::new(venation, neck, &frame, size, band),
             guide,
             wounds,
             course,
@@ -136,6 +151,7 @@ impl Scene {
                 paint.state,
                 &paint.petiole.colour,
                 petiole_reach,
+                !paint.damage.is_none(),
             ),
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
@@ -172,89 +188,17 @@ impl Scene {
     /// Both sides, empty where the leaf is not, heights without their normals; the back mirrored.
     pub(super) fn paint(&self) -> [SideMaps; 2] {
         let size = self.size;
-        let mut sides = [SideMaps::empty(size, self.maps), SideMaps::empty(size, self.maps)];
+        // Normals are made from the heights at the end.
+        let maps = self.maps.without(MapKind::Normal);
+        let mut sides = [SideMaps::empty(size, maps), SideMaps::empty(size, maps)];
         let [front, back] = &mut sides;
-        let bands: Vec<_> = bands(front, size).zip(bands(back, size)).collect();
-        bands.into_par_iter().enumerate().for_each(|(i, (mut front, mut back))| {
-            let rows = i * BAND..((i + 1) * BAND).min(size);
-            self.paint_band(rows, [&mut front, &mut back]);
+        let bands: Vec<_> =
+            bands(front, self.band * size).zip(bands(back, self.band * size)).collect();
+        bands.into_par_iter().enumerate().for_each_init(Scratch::default, |scratch, (i, sides)| {
+            let rows = i * self.band..((i + 1) * self.band).min(size);
+            pulp::Arch::new().dispatch(Band { scene: self, number: i, rows, sides, scratch });
         });
         sides
-    }
-
-    fn paint_band(&self, rows: Range<usize>, sides: [&mut SideRows<'_>; 2]) {
-        let size = self.size;
-        let cover = self.blade_cover(rows.clone());
-        let stalk = self.stalk.rows(&self.frame, size, rows.clone());
-        let spans = spans(&cover, stalk.as_deref(), size);
-        if spans.iter().all(Range::is_empty) {
-            return;
-        }
-        let veins = self.strokes.rows(size, rows.clone());
-        let mut walker = Walker::new(self);
-        let [front, back] = sides;
-        for y in rows.clone() {
-            let line = (y - rows.start) * size;
-            let span = spans[y - rows.start].clone();
-            if span.is_empty() {
-                continue;
-            }
-            let guide = self.guide.row(y);
-            let wounds = self.wounds.as_ref().map(|wounds| wounds.row(y));
-            for x in span {
-                let i = line + x;
-                let stalk = stalk.as_ref().map_or(StalkAt::default(), |stalk| stalk[i]);
-                let wound = wounds.as_ref().map_or(WoundAt::NONE, |wounds| wounds.at(x));
-                let texel = walker.texel(x, y, guide.at(x), veins[i], (cover[i], wound), stalk);
-                if texel.alpha > 0 {
-                    // Mirrored with the picture: what lies right in front lies left behind.
-                    self.put(&texel, [(front, i), (back, line + size - 1 - x)]);
-                }
-            }
-        }
-    }
-
-    /// Writes a texel to the planes that are kept.
-    #[inline]
-    fn put(&self, texel: &Texel<'_>, places: [(&mut SideRows<'_>, usize); 2]) {
-        let maps = self.maps;
-        let colours = texel.colours();
-        let [heights, bumps, roughness] = [
-            if maps.has(MapKind::Height) { texel.heights() } else { [0.0; 2] },
-            if maps.has(MapKind::Bump) { texel.bumps() } else { [0.0; 2] },
-            if maps.has(MapKind::Roughness) { texel.roughness() } else { [0.0; 2] },
-        ];
-        let thickness = if maps.has(MapKind::Thickness) { texel.thickness() } else { 0.0 };
-        let scale = 65535.0 / (2.0 * self.relief.bound());
-        for (side, (rows, at)) in places.into_iter().enumerate() {
-            let Shade { reflected, through } = colours[side];
-            let [r, g, b] = reflected.map(byte);
-            rows.colour[at] = [r, g, b, texel.alpha];
-            if let Some(height) = rows.height.get_mut(at) {
-                *height = (heights[side] * scale + 32768.0) as u16;
-            }
-            if let Some(bump) = rows.bump.get_mut(at) {
-                *bump = bumps[side] as u8;
-            }
-            if let Some(slot) = rows.roughness.get_mut(at) {
-                *slot = byte(roughness[side]);
-            }
-            if let Some(slot) = rows.transmission.get_mut(at) {
-                *slot = byte(optics::transmitted_share(reflected, through));
-            }
-            if let Some(slot) = rows.translucency.get_mut(at) {
-                *slot = through.map(byte);
-            }
-            if let Some(slot) = rows.thickness.get_mut(at) {
-                *slot = (thickness / self.relief.thickest() * 65535.0 + 0.5) as u16;
-            }
-            if let Some(slot) = rows.vein_mask.get_mut(at) {
-                *slot = texel.vein_mask();
-            }
-            if let Some(slot) = rows.vein_order.get_mut(at) {
-                *slot = texel.vein_order();
-            }
-        }
     }
 
     fn blade_cover(&self, rows: Range<usize>) -> Vec<f32> {
@@ -299,6 +243,140 @@ fn speckles(paint: &Paint<'_>, margin: &Margin, seed: Seed) -> Vec<DVec2> {
     speckles
 }
 
+/// What the bands that one thread paints use one after the other.
+#[derive(Default)]
+struct Scratch {
+    veins: VeinRows,
+    nodes: Vec<[f32; 8]>,
+}
+
+/// A band of rows to be painted, with whatever vector instructions the processor has: no result depends
+/// on which, since every number is rounded alike.
+struct Band<'a> {
+    scene: &'a Scene,
+    number: usize,
+    rows: Range<usize>,
+    sides: (SideRows<'a>, SideRows<'a>),
+    scratch: &'a mut Scratch,
+}
+
+impl pulp::WithSimd for Band<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { scene, number, rows, sides, scratch } = self;
+        let size = scene.size;
+        let cover = scene.blade_cover(rows.clone());
+        let stalk = scene.stalk.rows(&scene.frame, size, rows.clone());
+        let spans = spans(&cover, stalk.as_deref(), size);
+        let painted = spans.iter().filter(|span| !span.is_empty());
+        let Some(columns) = painted.cloned().reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
+        else {
+            return;
+        };
+        scene.strokes.fill(number, rows.clone(), size, &mut scratch.veins);
+        let at = |x: usize, y: usize| {
+            let [left, bottom] = scene.frame.min.as_vec2().to_array();
+            [left + x as f32 / scene.per_mm, bottom + (size - y) as f32 / scene.per_mm]
+        };
+        let mut structure = Structure::new(scene);
+        structure.prepare(at(columns.start, rows.end), at(columns.end, rows.start));
+        let (mut strip, mut painted) = (Strip::empty(), Painted::empty());
+        let (mut front, mut back) = sides;
+        for (y, span) in rows.clone().zip(&spans) {
+            if span.is_empty() {
+                continue;
+            }
+            let line = y - rows.start;
+            let guide = scene.guide.row(y, &mut scratch.nodes);
+            let wounds = scene.wounds.as_ref().map(|wounds| wounds.row(y));
+            let [left, low] = at(span.start, y + 1);
+            let height = low + 0.5 / scene.per_mm;
+            structure.prepare_row(left, at(span.end, y)[0], height, scene.seed);
+            for start in span.clone().step_by(LANES) {
+                let texels = line * size + start..line * size + (start + LANES).min(span.end);
+                strip.go_to(scene, start, texels.len(), y);
+                strip.read_guide(&guide);
+                strip.read_veins(&scratch.veins, line);
+                let stalk = stalk.as_ref().map(|stalk| &stalk[texels.clone()]);
+                strip.read_cover(&cover[texels.clone()], stalk);
+                strip.read_structure(scene, &structure);
+                if let Some(wounds) = &wounds {
+                    strip.read_wounds(scene, wounds);
+                }
+                strip.read_condition(scene);
+                painted.paint(scene, &strip, scene.maps);
+                front.put(0, texels.clone(), scene, &strip, &painted);
+                // Mirrored with the picture: what lies right in front lies left behind.
+                let mirrored = |x: usize| 2 * line * size + size - x;
+                let behind = mirrored(texels.end)..mirrored(texels.start);
+                back.put(1, behind, scene, &strip, &painted);
+            }
+        }
+    }
+}
+
+impl SideRows<'_> {
+    /// Writes a strip to the planes that are kept; the back from right to left.
+    #[inline(always)]
+    fn put(
+        &mut self,
+        side: usize,
+        texels: Range<usize>,
+        scene: &Scene,
+        strip: &Strip,
+        painted: &Painted,
+    ) {
+        #[inline(always)]
+        fn lay<T>(plane: &mut [T], side: usize, texels: Range<usize>, value: impl Fn(usize) -> T) {
+            // A plane that is not kept has no texels.
+            let Some(texels) = plane.get_mut(texels) else { return };
+            let n = texels.len();
+            // Written as loops: what iterators do out of line would be done without vectors.
+            if side == 0 {
+                for (i, texel) in texels.iter_mut().enumerate().take(LANES) {
+                    *texel = value(i);
+                }
+            } else {
+                for i in 0..n.min(LANES) {
+                    texels[n - 1 - i] = value(i);
+                }
+            }
+        }
+        let per_height = 65535.0 / (2.0 * scene.relief.bound());
+        let per_thickness = 65535.0 / scene.relief.thickest();
+        let (shades, all) = (&painted.shades[side], || texels.clone());
+        lay(self.colour, side, all(), |i| {
+            let [r, g, b, ..] = shades[i].map(byte);
+            [r, g, b, byte(painted.alpha[i])]
+        });
+        let heights = &painted.heights[side];
+        lay(self.height, side, all(), |i| (heights[i] * per_height + 32768.0) as u16);
+        lay(self.bump, side, all(), |i| painted.bumps[side][i] as u8);
+        lay(self.roughness, side, all(), |i| byte(painted.roughness[side][i]));
+        lay(self.transmission, side, all(), |i| byte(painted.transmission[side][i]));
+        lay(self.translucency, side, all(), |i| {
+            let [_, _, _, r, g, b, ..] = shades[i].map(byte);
+            [r, g, b]
+        });
+        lay(self.thickness, side, all(), |i| (painted.thickness[i] * per_thickness + 0.5) as u16);
+        lay(self.vein_mask, side, all(), |i| byte(strip.vein_mask(i)));
+        lay(self.vein_order, side, all(), |i| strip.vein_order(i));
+        lay(self.deep_colour, side, all(), |i| {
+            let [r, g, b, ..] = shades[i].map(word);
+            [r, g, b, word(painted.alpha[i])]
+        });
+        lay(self.deep_roughness, side, all(), |i| word(painted.roughness[side][i]));
+        lay(self.deep_transmission, side, all(), |i| word(painted.transmission[side][i]));
+        lay(self.deep_translucency, side, all(), |i| {
+            let [_, _, _, r, g, b, ..] = shades[i].map(word);
+            [r, g, b]
+        });
+        lay(self.deep_vein_mask, side, all(), |i| word(strip.vein_mask(i)));
+    }
+}
+
 /// In each row the columns from the first to the last that anything covers.
 fn spans(cover: &[f32], stalk: Option<&[StalkAt]>, width: usize) -> Vec<Range<usize>> {
     let covered = |i: usize| cover[i] > 0.0 || stalk.is_some_and(|stalk| stalk[i].cover > 0.0);
@@ -312,20 +390,29 @@ fn spans(cover: &[f32], stalk: Option<&[StalkAt]>, width: usize) -> Vec<Range<us
         .collect()
 }
 
-fn bands(side: &mut SideMaps, size: usize) -> impl Iterator<Item = SideRows<'_>> {
+fn bands(side: &mut SideMaps, band: usize) -> impl Iterator<Item = SideRows<'_>> {
     // A plane that is not kept has no rows, in every band.
-    fn chunks<T>(plane: &mut Grid<T>, size: usize) -> impl Iterator<Item = &mut [T]> {
-        plane.values_mut().chunks_mut(BAND * size).chain(std::iter::repeat_with(Default::default))
+    fn chunks<T>(plane: &mut Grid<T>, band: usize) -> impl Iterator<Item = &mut [T]> {
+        plane.values_mut().chunks_mut(band).chain(std::iter::repeat_with(Default::default))
     }
-    let mut height = chunks(&mut side.height, size);
-    let mut bump = chunks(&mut side.bump, size);
-    let mut roughness = chunks(&mut side.roughness, size);
-    let mut transmission = chunks(&mut side.transmission, size);
-    let mut translucency = chunks(&mut side.translucency, size);
-    let mut thickness = chunks(&mut side.thickness, size);
-    let mut vein_mask = chunks(&mut side.vein_mask, size);
-    let mut vein_order = chunks(&mut side.vein_order, size);
-    side.base_colour.values_mut().chunks_mut(BAND * size).map_while(move |colour| {
+    let mut height = chunks(&mut side.height, band);
+    let mut bump = chunks(&mut side.bump, band);
+    let mut roughness = chunks(&mut side.roughness, band);
+    let mut transmission = chunks(&mut side.transmission, band);
+    let mut translucency = chunks(&mut side.translucency, band);
+    let mut thickness = chunks(&mut side.thickness, band);
+    let mut vein_mask = chunks(&mut side.vein_mask, band);
+    let mut vein_order = chunks(&mut side.vein_order, band);
+    let mut deep = side.deep.as_deref_mut().map(|deep| {
+        let Deep { base_colour, roughness, transmission, translucency, vein_mask, .. } = deep;
+        let roughness = chunks(roughness, band).zip(chunks(transmission, band));
+        let others = chunks(translucency, band).zip(chunks(vein_mask, band));
+        chunks(base_colour, band).zip(roughness.zip(others))
+    });
+    side.base_colour.values_mut().chunks_mut(band).map_while(move |colour| {
+        let deep = deep.as_mut().and_then(Iterator::next);
+        let (deep_colour, ((deep_roughness, deep_transmission), others)) = deep.unwrap_or_default();
+        let (deep_translucency, deep_vein_mask) = others;
         Some(SideRows {
             colour,
             height: height.next()?,
@@ -336,6 +423,11 @@ fn bands(side: &mut SideMaps, size: usize) -> impl Iterator<Item = SideRows<'_>>
             thickness: thickness.next()?,
             vein_mask: vein_mask.next()?,
             vein_order: vein_order.next()?,
+            deep_colour,
+            deep_roughness,
+            deep_transmission,
+            deep_translucency,
+            deep_vein_mask,
         })
     })
 }

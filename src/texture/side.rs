@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::deep::Deep;
+use super::dilation::Empty;
 use super::map::{MapKind, MapSet, Outside};
 use crate::raster::Grid;
 
@@ -42,6 +44,8 @@ pub struct SideMaps {
     pub preview: Grid<[u8; 3]>,
     /// Six steps of enhancement, three in a row.
     pub enhancement: Grid<[u8; 3]>,
+    /// Colours and shares with 16 bits a channel, where they were asked for.
+    pub deep: Option<Box<Deep>>,
 }
 
 impl SideMaps {
@@ -67,6 +71,7 @@ impl SideMaps {
             // Made from the others at the end.
             preview: Grid::filled(0, 0, [0; 3]),
             enhancement: Grid::filled(0, 0, [0; 3]),
+            deep: Deep::empty(size, maps),
         }
     }
 
@@ -142,15 +147,19 @@ impl SideMaps {
         }
     }
 
-    /// Fills the texels outside the leaf from the texels `source` names (row by row from the top),
-    /// each plane after its map's [`Outside`].
-    pub(super) fn spread(&mut self, source: impl Fn(usize) -> Option<usize> + Sync) {
-        fill(&mut self.base_colour, &source, |texel, [r, g, b, _]| *texel = [r, g, b, 0]);
-        fill(&mut self.height, &source, |texel, source| *texel = source);
-        fill(&mut self.roughness, &source, |texel, source| *texel = source);
-        fill(&mut self.transmission, &source, |texel, source| *texel = source);
-        fill(&mut self.translucency, &source, |texel, source| *texel = source);
-        fill(&mut self.bump, &source, |texel, source| *texel = source);
+    /// Fills the texels outside the leaf, each plane after its map's [`Outside`].
+    pub(super) fn spread(&mut self, empty: &Empty) {
+        empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {
+            texels.fill([r, g, b, 0]);
+        });
+        empty.fill(self.height.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.roughness.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.bump.values_mut(), |texels, value| texels.fill(value));
+        if let Some(deep) = &mut self.deep {
+            deep.spread(empty);
+        }
         debug_assert!(MapKind::Thickness.outside() == Outside::Zero, "left as it is empty");
     }
 
@@ -181,17 +190,4 @@ fn bytes<T: Sync, const N: usize>(
     bytes: impl Fn(&T) -> [u8; N] + Sync + Send,
 ) -> Vec<u8> {
     plane.values().par_iter().map(bytes).collect::<Vec<_>>().into_flattened()
-}
-
-fn fill<T: Copy>(
-    plane: &mut Grid<T>,
-    source: impl Fn(usize) -> Option<usize>,
-    put: impl Fn(&mut T, T),
-) {
-    for i in 0..plane.values().len() {
-        if let Some(source) = source(i) {
-            let source = plane.values()[source];
-            put(&mut plane.values_mut()[i], source);
-        }
-    }
 }

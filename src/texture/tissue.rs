@@ -7,6 +7,7 @@
 //! Sizes are millimetres, so a larger texture shows more and not larger tissue; what would be finer
 //! than the texels fades.
 
+use super::strip::{LANES, Lane};
 use crate::geometry::noise;
 
 /// Sizes of the meshes (mm): of third-order veins where none have grown, of the fourth order, and
@@ -26,89 +27,145 @@ pub(super) const AWAY_MM: [[f32; 2]; 3] = [[0.5, 1.3], [0.05, 0.35], [0.0, 0.1]]
 const GRAIN_MM: f32 = 0.11;
 
 /// A smooth step from 0 at `low` to 1 at `high`.
-#[inline]
+#[inline(always)]
 pub(super) fn smooth(low: f32, high: f32, x: f32) -> f32 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// What a net is at one place.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Mesh {
-    /// Distance to the border of the areole (mm).
-    pub border: f32,
-    /// A number of the areole, 0–1.
-    pub tone: f32,
-}
+/// Cells that a place looks at: its own and the eight around it.
+const AROUND: usize = 9;
 
-/// One net, read along a row: it keeps the points around the last place.
+/// Texels that are compared with the same points at a time.
+const BLOCK: usize = 8;
+
+/// One net over some rows: the points of all its cells there.
 #[derive(Debug)]
 pub(super) struct Net {
     size: f32,
     seed: u32,
-    cell: (i32, i32),
-    points: [[f32; 2]; 9],
-    hashes: [u32; 9],
+    /// The cell of the first point.
+    first: [i32; 2],
+    across: usize,
+    /// Where in its cell a point lies, and a number of its areole, 0–1.
+    points: Vec<[f32; 3]>,
 }
 
 impl Net {
     pub(super) fn new(size: f32, seed: u32) -> Self {
-        let mut net = Self { size, seed, cell: (0, 0), points: [[0.0; 2]; 9], hashes: [0; 9] };
-        net.gather((0, 0));
-        net
+        Self { size, seed, first: [0; 2], across: 0, points: Vec::new() }
     }
 
-    fn gather(&mut self, cell: (i32, i32)) {
-        self.cell = cell;
-        for (k, point) in self.points.iter_mut().enumerate() {
-            let (dx, dy) = (k as i32 % 3 - 1, k as i32 / 3 - 1);
-            let hash = noise::lattice(cell.0 + dx, cell.1 + dy, self.seed);
-            self.hashes[k] = hash;
-            // Within the middle 90 % of the cell, from the two halves of the hash.
-            let jitter = |bits: u32| 0.05 + 0.9 * (bits as f32 / 65536.0);
-            *point = [dx as f32 + jitter(hash & 0xffff), dy as f32 + jitter(hash >> 16)];
+    /// Works out the points around all places between two corners (mm).
+    pub(super) fn prepare(&mut self, low: [f32; 2], high: [f32; 2]) {
+        let cell = |v: f32| noise::floor(v / self.size);
+        self.first = low.map(|v| cell(v) - 1);
+        let last = high.map(|v| cell(v) + 1);
+        self.across = (last[0] - self.first[0] + 1) as usize;
+        self.points.clear();
+        for y in self.first[1]..=last[1] {
+            for x in self.first[0]..=last[0] {
+                let hash = noise::lattice(x, y, self.seed);
+                // Within the middle 90 % of the cell, from the two halves of the hash.
+                let jitter = |bits: u32| 0.05 + 0.9 * (bits as f32 / 65536.0);
+                let tone = noise::unit(noise::lattice(hash as i32, 0, 7));
+                self.points.push([jitter(hash & 0xffff), jitter(hash >> 16), tone]);
+            }
         }
     }
 
-    /// The net at a place (mm).
-    #[inline]
-    pub(super) fn at(&mut self, x: f32, y: f32) -> Mesh {
-        let (x, y) = (x / self.size, y / self.size);
-        let cell = (noise::floor(x), noise::floor(y));
-        if cell != self.cell {
-            self.gather(cell);
+    /// The points around a cell, seen from its corner.
+    #[inline(always)]
+    fn around(&self, x: i32, y: i32) -> [[f32; 3]; AROUND] {
+        let (column, row) = ((x - self.first[0]) as usize, (y - self.first[1]) as usize);
+        let mut points = [[0.0; 3]; AROUND];
+        for (dy, three) in points.chunks_exact_mut(3).enumerate() {
+            let from = &self.points[(row + dy - 1) * self.across + column - 1..][..3];
+            for (dx, (point, [px, py, tone])) in three.iter_mut().zip(from).enumerate() {
+                *point = [px + dx as f32 - 1.0, py + dy as f32 - 1.0, *tone];
+            }
         }
-        let (x, y) = (x - cell.0 as f32, y - cell.1 as f32);
-        // The two nearest points without a branch, which would be mispredicted at every other
-        // point: positive floats sort as their bits do, and the last four bits carry the index.
-        let (mut first, mut second) = (u32::MAX, u32::MAX);
-        for (k, point) in self.points.iter().enumerate() {
-            let (dx, dy) = (point[0] - x, point[1] - y);
+        points
+    }
+
+    /// The net at places (mm) between the corners it was prepared for: distance to the border of the
+    /// areole (mm), and a number of the areole, 0–1.
+    #[inline(always)]
+    pub(super) fn along(&self, xs: &Lane, ys: &Lane, border: &mut Lane, tone: &mut Lane) {
+        let per_cell = 1.0 / self.size;
+        let (mut cells, mut within) = ([[0_i32; LANES]; 2], [[0.0_f32; LANES + BLOCK]; 2]);
+        for i in 0..LANES {
+            let (x, y) = (xs[i] * per_cell, ys[i] * per_cell);
+            let (column, row) = (noise::floor(x), noise::floor(y));
+            (cells[0][i], cells[1][i]) = (column, row);
+            (within[0][i], within[1][i]) = (x - column as f32, y - row as f32);
+        }
+        let (mut first, mut second) = ([[0.0_f32; LANES + BLOCK]; 2], [[0.0; LANES + BLOCK]; 2]);
+        let mut start = 0;
+        while start < LANES {
+            let cell = (cells[0][start], cells[1][start]);
+            let mut end = start + 1;
+            while end < LANES && (cells[0][end], cells[1][end]) == cell {
+                end += 1;
+            }
+            let points = self.around(cell.0, cell.1);
+            // A block may reach past the end: what follows is overwritten by the next run.
+            for block in (start..end).step_by(BLOCK) {
+                let at = |axis: usize| {
+                    <&[f32; BLOCK]>::try_from(&within[axis][block..block + BLOCK])
+                        .expect("a slice of that length")
+                };
+                let (nearest, next) = two_nearest(&points, at(0), at(1));
+                for l in 0..BLOCK {
+                    let (p, q) = (points[nearest[l] as usize & 15], points[next[l] as usize & 15]);
+                    (first[0][block + l], first[1][block + l]) = (p[0], p[1]);
+                    (second[0][block + l], second[1][block + l]) = (q[0], q[1]);
+                    if block + l < LANES {
+                        tone[block + l] = p[2];
+                    }
+                }
+            }
+            start = end;
+        }
+        for i in 0..LANES {
+            let squared = |x: f32, y: f32| {
+                let (dx, dy) = (x - within[0][i], y - within[1][i]);
+                dx * dx + dy * dy
+            };
+            let (p, q) = ((first[0][i], first[1][i]), (second[0][i], second[1][i]));
+            let (dx, dy) = (p.0 - q.0, p.1 - q.1);
+            let apart = (dx * dx + dy * dy).sqrt().max(1e-3);
+            let behind = squared(q.0, q.1) - squared(p.0, p.1);
+            border[i] = (behind / (2.0 * apart)).max(0.0) * self.size;
+        }
+    }
+}
+
+/// Which of the points are nearest and second nearest to some places: the index in the last four bits.
+///
+/// Without a branch, which would be mispredicted at every other point: positive floats sort as their
+/// bits do, and the last bits carry the index.
+#[inline(always)]
+fn two_nearest(
+    points: &[[f32; 3]; AROUND],
+    x: &[f32; BLOCK],
+    y: &[f32; BLOCK],
+) -> ([u32; BLOCK], [u32; BLOCK]) {
+    let (mut first, mut second) = ([u32::MAX; BLOCK], [u32::MAX; BLOCK]);
+    for (k, point) in points.iter().enumerate() {
+        for l in 0..BLOCK {
+            let (dx, dy) = (point[0] - x[l], point[1] - y[l]);
             let key = ((dx * dx + dy * dy).to_bits() & !15) | k as u32;
-            second = second.min(first.max(key));
-            first = first.min(key);
-        }
-        let (nearest, next) = ((first & 15) as usize, (second & 15) as usize);
-        let (p, q) = (self.points[nearest], self.points[next]);
-        let squared = |point: [f32; 2]| (point[0] - x).powi(2) + (point[1] - y).powi(2);
-        let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
-        let apart = (dx * dx + dy * dy).sqrt().max(1e-3);
-        Mesh {
-            border: ((squared(q) - squared(p)) / (2.0 * apart)).max(0.0) * self.size,
-            tone: noise::unit(noise::lattice(self.hashes[nearest] as i32, 0, 7)),
+            second[l] = second[l].min(first[l].max(key));
+            first[l] = first[l].min(key);
         }
     }
+    (first, second)
 }
 
 /// How much of structures `size` mm wide a texture of so many pixels to the millimetre can show.
 pub(super) fn shown(size: f32, pixels_per_mm: f32) -> f32 {
     smooth(1.8, 5.0, size * pixels_per_mm)
-}
-
-/// Grain of the surface at a place (mm): −1 – 1.
-#[inline]
-pub(super) fn grain(x: f32, y: f32, size: f32, seed: u32) -> f32 {
-    noise::gradient(x / size, y / size, seed)
 }
 
 /// Size of the grain on a texture (mm): its own, but never finer than the texels can carry.
@@ -120,14 +177,45 @@ pub(super) fn grain_size(pixels_per_mm: f32) -> f32 {
 mod tests {
     use super::*;
 
+    /// Cell by cell, every point of a wide neighbourhood.
+    fn slow(size: f32, seed: u32, x: f32, y: f32) -> (f32, f32) {
+        let (x, y) = (x / size, y / size);
+        let (cx, cy) = (x.floor() as i32, y.floor() as i32);
+        let mut points = Vec::new();
+        for (i, j) in (-2..=2).flat_map(|j| (-2..=2).map(move |i| (cx + i, cy + j))) {
+            let hash = noise::lattice(i, j, seed);
+            let jitter = |bits: u32| 0.05 + 0.9 * (bits as f32 / 65536.0);
+            let (px, py) = (i as f32 + jitter(hash & 0xffff), j as f32 + jitter(hash >> 16));
+            let tone = noise::unit(noise::lattice(hash as i32, 0, 7));
+            points.push(((px - x).powi(2) + (py - y).powi(2), [px, py], tone));
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let ([px, py], [qx, qy]) = (points[0].1, points[1].1);
+        let apart = (px - qx).hypot(py - qy);
+        ((points[1].0 - points[0].0) / (2.0 * apart) * size, points[0].2)
+    }
+
     #[test]
-    fn a_net_is_the_same_however_one_comes_to_a_place() {
-        let mut walked = Net::new(0.85, 5);
-        for i in 0..500 {
-            let (x, y) = (i as f32 * 0.13 - 20.0, i as f32 * 0.07 - 9.0);
-            let (here, fresh) = (walked.at(x, y), Net::new(0.85, 5).at(x, y));
-            assert_eq!((here.border, here.tone), (fresh.border, fresh.tone));
-            assert!(here.border >= 0.0 && here.border < 0.85 && (0.0..1.0).contains(&here.tone));
+    fn a_net_along_a_strip_is_that_of_a_full_search() {
+        for (size, step) in [(0.85, 0.05), (0.27, 0.05), (2.1, 0.9)] {
+            let mut net = Net::new(size, 5);
+            net.prepare([-21.0, -10.0], [50.0, 8.0]);
+            let mut close = 0;
+            for row in 0..40 {
+                let xs: Lane = std::array::from_fn(|i| i as f32 * step - 20.0 + 0.3 * row as f32);
+                let ys: Lane = std::array::from_fn(|i| 0.4 * row as f32 - 9.0 + 0.01 * i as f32);
+                let (mut border, mut tone) = ([0.0; LANES], [0.0; LANES]);
+                net.along(&xs, &ys, &mut border, &mut tone);
+                for i in 0..LANES {
+                    let (expected, areole) = slow(size, 5, xs[i], ys[i]);
+                    // The nearest two of nine are not always those of twenty-five, and on a border
+                    // either areole will do.
+                    close += usize::from((border[i] - expected).abs() < 2e-3 * size);
+                    assert!(tone[i] == areole || expected < 2e-3 * size, "{} {}", xs[i], ys[i]);
+                    assert!(border[i] >= 0.0 && border[i] < size && (0.0..1.0).contains(&tone[i]));
+                }
+            }
+            assert!(close > 40 * LANES * 995 / 1000, "{size}: {close}");
         }
     }
 

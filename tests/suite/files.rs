@@ -5,6 +5,7 @@ mod card;
 mod gltf;
 mod pictures;
 mod profiles;
+mod three;
 mod usda;
 mod vectors;
 mod write;
@@ -139,6 +140,7 @@ fn textures(margin: &Margin) -> TextureSet {
         bump: grid(|i| pixel(i, salt + 5)),
         preview: grid(|i| [pixel(i, salt), 9, 9]),
         enhancement: grid(|i| [9, pixel(i, salt), 9]),
+        deep: None,
     };
     let (front, back) = (side(1), side(2));
     TextureSet {

@@ -4,9 +4,12 @@
 use glam::DVec2;
 use palette::{FromColor, Lab, Srgb};
 use venation::geometry::polygon::signed_area;
+use venation::observer::Silent;
+use venation::seed::Seed;
 use venation::texture::damage::DamageSpec;
-use venation::texture::pigment::{Albedo, ColourType};
-use venation::texture::{Style, TextureSet};
+use venation::texture::map::MapKind;
+use venation::texture::pigment::{Albedo, ColourModel, ColourType, Hsv};
+use venation::texture::{Style, TextureSet, paint};
 
 use crate::sample_leaf;
 use crate::support::{contents, fail, fresh, succeed};
@@ -165,6 +168,96 @@ fn a_diffuse_base_colour_is_the_total_less_the_surface() {
         blade.iter().map(|(a, b)| linear(a[c]) - linear(b[c])).sum::<f64>() / blade.len() as f64
     };
     assert!((0.030..0.046).contains(&surface(1)), "{}", surface(1));
+}
+
+#[test]
+fn hues_chosen_by_hand_turn_with_the_season_and_let_light_through() {
+    let at = |season| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.model = ColourModel::Hsv;
+        settings.state.season = season;
+        settings.colour.pigments.autumn.anthocyanin_ug_cm2 = 0.0;
+        painted(&settings)
+    };
+    let (summer, autumn, litter) = (at(0.0), at(0.5), at(1.0));
+    // In summer as chosen: 92 degrees, and the light that comes through is greener yellow.
+    assert!((85.0..100.0).contains(&hue_deg(&summer)), "{}", hue_deg(&summer));
+    assert!((35.0..62.0).contains(&hue_deg(&autumn)), "{}", hue_deg(&autumn));
+    let [r, g, b] = mean(&litter);
+    assert!(r > g && g > b, "{r} {g} {b}");
+    for set in [&summer, &autumn, &litter] {
+        let texels = set.front.base_colour.values().iter().zip(set.front.translucency.values());
+        let mut shine = 0;
+        for (back, through) in texels {
+            for c in 0..3 {
+                assert!(linear(back[c]) + linear(through[c]) <= 1.005, "{back:?} {through:?}");
+            }
+            shine += usize::from(back[3] == 255 && through[0].max(through[1]) > 60);
+        }
+        assert!(shine > 1000, "{shine}");
+    }
+    // A thin pale leaf lets more light through than a deep green one.
+    let through = |value: f64, saturation: f64| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.model = ColourModel::Hsv;
+        settings.colour.front.base = Hsv { hue_deg: 92.0, saturation, value };
+        let set = painted(&settings);
+        set.front.translucency.values().iter().map(|texel| u64::from(texel[1])).sum::<u64>()
+    };
+    let (pale, deep) = (through(0.6, 0.5), through(0.3, 0.45));
+    assert!(pale > deep * 5 / 4, "{pale} {deep}");
+}
+
+#[test]
+fn evergreen_leaves_stay_green_until_they_die() {
+    let at = |kept, season| {
+        let mut settings = Settings::of_size(96);
+        settings.colour.pigments.autumn.chlorophyll_kept = kept;
+        settings.state.season = season;
+        hue_deg(&painted(&settings))
+    };
+    let [summer, evergreen, turned, dead] =
+        [at(0.9, 0.0), at(0.9, 0.5), at(0.0, 0.5), at(0.9, 1.0)];
+    let half = 0.5 * (summer + turned);
+    assert!(evergreen > half && turned < 62.0, "{summer} {evergreen} {turned}");
+    assert!(dead < 45.0, "{dead}");
+}
+
+#[test]
+fn sixteen_bits_are_more_than_eight_and_agree_with_them() {
+    let margin = sample_leaf::ovate(60.0);
+    let veins = sample_leaf::veins(&margin);
+    let settings = Settings::of_size(96);
+    let mut deep = settings.as_paint();
+    deep.maps = deep.maps.deep();
+    let deep = paint(&deep, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
+    let plain = settings.painted(&margin, &veins);
+    for (deep, plain) in [(&deep.front, &plain.front), (&deep.back, &plain.back)] {
+        for map in [
+            MapKind::BaseColour,
+            MapKind::Opacity,
+            MapKind::Roughness,
+            MapKind::Gloss,
+            MapKind::AmbientOcclusion,
+            MapKind::Orm,
+            MapKind::MaskMap,
+            MapKind::Translucency,
+            MapKind::VeinMask,
+        ] {
+            assert!(deep.samples(map) == plain.samples(map), "{map}: 8 bits are what they were");
+            let (fine, coarse) = (deep.samples_of(map, 16, 1.0), plain.samples(map));
+            assert_eq!(fine.len(), 2 * coarse.len());
+            let mut between = 0;
+            for (pair, &byte) in fine.chunks_exact(2).zip(&coarse) {
+                let value = u16::from_be_bytes([pair[0], pair[1]]);
+                let off = f64::from(value) / 257.0 - f64::from(byte);
+                assert!(off.abs() <= 0.51, "{map}: {value} {byte}");
+                between += usize::from(value % 257 != 0);
+            }
+            let few = if map == MapKind::Opacity { 50 } else { 1000 };
+            assert!(between > few, "{map}: {between} values are between those of 8 bits");
+        }
+    }
 }
 
 /// Of the mean colour, as long as red or green is the greatest and blue the least.

@@ -7,14 +7,13 @@
 
 use super::season::Turned;
 use super::shade;
-use super::{
-    BACK, ColourSpec, ColourType, FRONT, Hsv, SPREADING, SenescenceSpec, StateSpec, Tissue,
-};
+use super::{BACK, ColourSpec, FRONT, Hsv, SPREADING, SenescenceSpec, StateSpec, Tissue};
 use crate::parameter::parameters;
 use crate::raster::color::Tint;
+use crate::texture::brush::{Shade, Shades};
 use crate::texture::lattice::{self, Lattice};
 use crate::texture::petiole::StalkAt;
-use crate::texture::texel::Shade;
+use crate::texture::strip::{LANES, Lane, Strip};
 use crate::texture::tissue::smooth;
 
 parameters! {
@@ -57,6 +56,8 @@ parameters! {
         back_bloom: number(0.12, 0.0..=1.0, ""),
         /// Brown of the lower side: the rusty felt of some leaves.
         back_brown: number(0.0, 0.0..=3.0, ""),
+        /// Anthocyanin of the lower side's felt: it makes brown rusty.
+        back_anthocyanin_ug_cm2: number(0.0, 0.0..=60.0, "µg/cm²"),
         /// Bloom of the upper side.
         front_bloom: number(0.0, 0.0..=1.0, ""),
         /// Anthocyanin of a leaf that has just unfolded.
@@ -112,9 +113,11 @@ const SEASONS: usize = 256;
 #[derive(Debug)]
 pub(in crate::texture) struct Mixer {
     lattice: &'static Lattice,
-    r#type: ColourType,
+    /// Strength of the second tissue spread from veins, from edges and by speckles: 1 for the type
+    /// chosen; and of the undertones of the others.
+    chosen: [f32; 3],
+    faint: [f32; 3],
     per_spread_mm: f32,
-    undertone: f32,
     mottle: f32,
     leaf: Mix,
     alternate: Mix,
@@ -124,11 +127,15 @@ pub(in crate::texture) struct Mixer {
     back_structure: f32,
     back_bloom: f32,
     back_brown: f32,
+    back_red: f32,
     front_bloom: f32,
     /// Chlorophyll's colour, and the other pigments, of a leaf this young, as shares.
     young: [f32; 2],
     flush: f32,
     seasons: Vec<Turned>,
+    summer: bool,
+    /// Whether neither sickness nor wounds count.
+    sound: bool,
     petiole: Tint,
     petiole_reach: f32,
 }
@@ -150,9 +157,13 @@ impl Mixer {
         let dead = Tint { hue: 28.0, saturation: 0.42, value: 0.38 }.unrolled(petiole);
         Self {
             lattice: lattice::of(spec.albedo),
-            r#type: spec.r#type,
+            chosen: SPREADING.map(|r#type| f32::from(u8::from(r#type == spec.r#type))),
+            faint: SPREADING.map(
+                |r#type| {
+                    if r#type == spec.r#type { 0.0 } else { spec.undertone as f32 }
+                },
+            ),
             per_spread_mm: 1.0 / (spec.spread_mm as f32).max(1e-6),
-            undertone: spec.undertone as f32,
             mottle: spec.mottle as f32,
             leaf: mix(&pigments.leaf),
             alternate: mix(&pigments.alternate),
@@ -162,72 +173,104 @@ impl Mixer {
             back_structure: pigments.back_structure as f32,
             back_bloom: pigments.back_bloom as f32,
             back_brown: pigments.back_brown as f32,
+            back_red: pigments.back_anthocyanin_ug_cm2 as f32,
             front_bloom: pigments.front_bloom as f32,
             young: [1.0 - 0.33 * youth, 1.0 - 0.5 * youth],
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
+            summer: state.season == 0.0,
+            sound: false,
             petiole: petiole.towards(dead, dry),
             petiole_reach,
         }
     }
 
+    /// The same leaf, as if it were well and nothing had been done to it.
+    pub(super) fn sound(self) -> Self {
+        Self { sound: true, ..self }
+    }
+
     /// What is seen of both sides of the blade, and through them.
-    #[inline]
-    pub(super) fn blade(&self, tissue: &Tissue) -> [Shade; 2] {
-        let lamina = self.lamina(tissue);
-        let vein = self.vein(tissue, &lamina);
-        let share = |face| {
-            let [net, seen] = tissue.veins_seen(face, self.mottle);
-            seen.max(0.8 * net).min(1.0)
-        };
-        let above = mixed(lamina, vein, share(&FRONT));
-        let mut below = mixed(lamina, vein, share(&BACK));
-        below[0] *= self.back_chlorophyll;
-        below[1] *= 0.5 + 0.5 * self.back_chlorophyll;
-        below[2] *= 0.25 + 0.5 * self.back_chlorophyll;
-        below[3] = 0.85 * below[3] + self.back_brown;
-        below[4] += self.back_structure;
-        let [r, g, b, tr, tg, tb, ..] = self.lattice.at(above);
-        let [br, bg, bb, ..] = self.lattice.at(below);
-        // Light meets the same tissue from either side; a bloom sends some of it back.
-        let bloom = self.back_bloom * (1.0 - 0.4 * share(&BACK)) * (1.0 - tissue.injury.brown);
-        let white = |value: f32, bloom: f32| value + (BLOOM - value) * bloom;
-        let through = [tr, tg, tb].map(|value| value * (1.0 - 0.5 * bloom));
-        let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
-        let front = [r, g, b].map(|value| white(value, self.front_bloom));
-        let front = Shade { reflected: front, through };
-        let back = Shade { reflected: [br, bg, bb].map(|value| white(value, bloom)), through };
-        if near == 0.0 {
-            return [front, back];
+    #[inline(always)]
+    pub(super) fn paint(&self, strip: &Strip, [front, back]: &mut [Shades; 2]) {
+        let turned = self.turned(strip.seasons());
+        let (mut above, mut below) = ([[0.0; LANES]; 5], [[0.0; LANES]; 5]);
+        let mut bloom = [0.0; LANES];
+        for i in 0..LANES {
+            let mut tissue = strip.tissue(i);
+            if self.sound {
+                (tissue.condition, tissue.injury) = Default::default();
+            }
+            let turned = Turned::of(std::array::from_fn(|k| turned[k][i]));
+            let lamina = self.lamina(&tissue, &turned);
+            let vein = self.vein(&tissue, &lamina);
+            let [upper, lower] = [FRONT, BACK].map(|face| {
+                let [net, seen] = tissue.veins_seen(&face, self.mottle);
+                seen.max(0.8 * net).min(1.0)
+            });
+            let upper = mixed(lamina, vein, upper);
+            // A bloom sends back some of the light; veins have less of it, and what is dead none.
+            bloom[i] = self.back_bloom * (1.0 - 0.4 * lower) * (1.0 - tissue.injury.brown);
+            let lower = self.behind(mixed(lamina, vein, lower));
+            for k in 0..5 {
+                (above[k][i], below[k][i]) = (upper[k], lower[k]);
+            }
         }
-        // The midrib takes the petiole's colour at the base.
+        self.lattice.read(&above, front);
+        self.lattice.read(&below, back);
+        let white = |value: f32, bloom: f32| value + (BLOOM - value) * bloom;
+        for i in 0..LANES {
+            // Light meets the same tissue from either side.
+            for c in 0..3 {
+                let through = front[i][c + 3] * (1.0 - 0.5 * bloom[i]);
+                (front[i][c + 3], back[i][c + 3]) = (through, through);
+                front[i][c] = white(front[i][c], self.front_bloom);
+                back[i][c] = white(back[i][c], bloom[i]);
+            }
+        }
+        if strip.y.abs() < self.petiole_reach {
+            self.add_petiole(strip, [front, back]);
+        }
+    }
+
+    /// The midrib takes the petiole's colour at the base.
+    fn add_petiole(&self, strip: &Strip, sides: [&mut Shades; 2]) {
         let petiole = shade(self.petiole, 0.3);
-        [(front, &FRONT), (back, &BACK)].map(|(shade, face)| {
-            shade.mixed(petiole, 0.55 * near * tissue.veins_seen(face, self.mottle)[1])
-        })
+        for (shades, face) in sides.into_iter().zip([&FRONT, &BACK]) {
+            for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
+                let tissue = strip.tissue(i);
+                let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
+                let share = 0.55 * near * tissue.veins_seen(face, self.mottle)[1];
+                *seen = Shade::of(*seen).mixed(petiole, share).array();
+            }
+        }
+    }
+
+    /// The same tissue as seen from below: looser, with less of everything.
+    #[inline(always)]
+    fn behind(&self, mut mix: Mix) -> Mix {
+        mix[0] *= self.back_chlorophyll;
+        mix[1] *= 0.5 + 0.5 * self.back_chlorophyll;
+        mix[2] = mix[2] * (0.25 + 0.5 * self.back_chlorophyll) + self.back_red;
+        mix[3] = 0.85 * mix[3] + self.back_brown;
+        mix[4] += self.back_structure;
+        mix
     }
 
     /// The tissue between the veins.
-    #[inline]
-    fn lamina(&self, tissue: &Tissue) -> Mix {
+    #[inline(always)]
+    fn lamina(&self, tissue: &Tissue, turned: &Turned) -> Mix {
         let m = self.mottle;
         // The scheme chosen, and the others faintly: deeper green beside veins, thinner towards the
         // margin, a trace of brown in spots.
-        let mut mix = self.leaf;
-        let (mut green, mut brown) = (1.0, 0.0);
         let weights = tissue.weights(self.per_spread_mm, m);
-        for (i, (w, r#type)) in weights.into_iter().zip(SPREADING).enumerate() {
-            if r#type == self.r#type {
-                mix = mixed(mix, self.alternate, w);
-            } else {
-                let w = w * self.undertone;
-                match i {
-                    0 => green *= 1.0 + 1.1 * w,
-                    1 => green *= 1.0 - 0.5 * w,
-                    _ => brown += 0.25 * w,
-                }
-            }
+        let mut mix = self.leaf;
+        for (w, chosen) in weights.into_iter().zip(self.chosen) {
+            mix = mixed(mix, self.alternate, w * chosen);
         }
+        let [veins, edges, speckles] = std::array::from_fn(|k| weights[k] * self.faint[k]);
+        let mut green = (1.0 + 1.1 * veins) * (1.0 - 0.5 * edges);
+        let brown = 0.25 * speckles;
         // No two areoles hold the same; green tissue thickens beside a vein, and thins at the rim.
         let [broad, middle, fine] = tissue.place.noise;
         green *= 1.0 - (1.7 * m * tissue.unevenness()).clamp(-0.8, 0.7);
@@ -239,15 +282,14 @@ impl Mixer {
         mix[2] *= 1.0 + m * (0.8 * middle + 0.5 * fine);
         mix[3] += brown;
         mix[4] += 0.15 * m * fine + 0.1 * rim;
-        self.aged(mix, tissue, 1.0 + 0.9 * m * (broad + 0.5 * middle))
+        self.aged(mix, tissue, turned, 1.0 + 0.9 * m * (broad + 0.5 * middle))
     }
 
     /// Youth, season, sickness and injuries, in the order in which they come. `red` is how readily
     /// this place reddens.
-    #[inline]
-    fn aged(&self, mut mix: Mix, tissue: &Tissue, red: f32) -> Mix {
+    #[inline(always)]
+    fn aged(&self, mut mix: Mix, tissue: &Tissue, turned: &Turned, red: f32) -> Mix {
         let condition = &tissue.condition;
-        let turned = self.turned(condition.season);
         // Chlorophyll fades where its colour changes evenly.
         let left = turned.chlorophyll * self.young[0] * (1.0 - 0.92 * condition.chlorosis);
         let green = mix[0] / (mix[0] + HALF_GREEN) * left;
@@ -262,23 +304,26 @@ impl Mixer {
         mixed(mix, DEAD, tissue.injury.brown)
     }
 
-    #[inline]
-    fn turned(&self, season: f32) -> Turned {
-        let place = season.clamp(0.0, 1.0) * (SEASONS - 1) as f32;
-        let i = (place as usize).min(SEASONS - 2);
-        let (a, b, t) = (&self.seasons[i], &self.seasons[i + 1], place - i as f32);
-        let mix = |a: f32, b: f32| a + (b - a) * t;
-        Turned {
-            chlorophyll: mix(a.chlorophyll, b.chlorophyll),
-            carotenoid: mix(a.carotenoid, b.carotenoid),
-            anthocyanin: mix(a.anthocyanin, b.anthocyanin),
-            brown: mix(a.brown, b.brown),
-            structure: mix(a.structure, b.structure),
+    /// What the season has made of the pigments at each place; see [`Turned`].
+    #[inline(always)]
+    fn turned(&self, seasons: &Lane) -> [Lane; 5] {
+        if self.summer {
+            return self.seasons[0].array().map(|value| [value; LANES]);
         }
+        let mut turned = [[0.0; LANES]; 5];
+        for (lane, season) in seasons.iter().enumerate() {
+            let place = season.clamp(0.0, 1.0) * (SEASONS - 1) as f32;
+            let i = (place as usize).min(SEASONS - 2);
+            let (a, b) = (self.seasons[i].array(), self.seasons[i + 1].array());
+            for k in 0..5 {
+                turned[k][lane] = a[k] + (b[k] - a[k]) * (place - i as f32);
+            }
+        }
+        turned
     }
 
     /// A vein in such tissue: pale, the larger the paler, and brown before the tissue is.
-    #[inline]
+    #[inline(always)]
     fn vein(&self, tissue: &Tissue, lamina: &Mix) -> Mix {
         let large = tissue.vein.radius / (tissue.vein.radius + 0.15);
         let crest = tissue.roundness();
@@ -302,7 +347,7 @@ impl Mixer {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn mixed(a: Mix, b: Mix, share: f32) -> Mix {
     std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
 }

@@ -5,19 +5,107 @@
 //! the colour made uneven by the tissue; hue on the shorter arc. The schemes not chosen are applied
 //! with colours just off the base, as in the source.
 //!
+//! The pigments of a leaf of such colours are found from them, and are what light goes through and what
+//! ages, sickens and is hurt.
+//!
 //! Pigments only: no light is painted in, but the soft darkening of the green tissue that lines a
 //! vein.
 
-use super::{Albedo, ColourSpec, ColourType, Face, Hsv, SPREADING, SideColour, Tissue, shade};
+use super::amounts::Mixer;
+use super::{
+    Albedo, Amounts, BACK, ColourSpec, ColourType, FRONT, Face, Hsv, SPREADING, SideColour,
+    StateSpec, Tissue, shade,
+};
 use crate::raster::color::{Tint, byte};
+use crate::texture::brush::{Shade, Shades};
+use crate::texture::lattice;
 use crate::texture::petiole::StalkAt;
 use crate::texture::spectrum::{decoded, encoded};
-use crate::texture::texel::Shade;
+use crate::texture::strip::{LANES, Strip};
 use crate::texture::tissue::smooth;
+
+/// Both sides as they are chosen, over the pigments of a leaf that looks so: those are what light goes
+/// through, and what ages and sickens.
+#[derive(Debug)]
+pub(in crate::texture) struct Leaf {
+    sides: [Chosen; 2],
+    /// The leaf as it stands, and as it would be in summer and sound.
+    now: Mixer,
+    sound: Mixer,
+    /// Whether the two may differ.
+    changed: bool,
+}
+
+impl Leaf {
+    pub(super) fn new(
+        spec: &ColourSpec,
+        state: &StateSpec,
+        petiole: &Hsv,
+        petiole_reach: f32,
+        hurt: bool,
+    ) -> Self {
+        let mut alike = spec.clone();
+        let lattice = lattice::of(Albedo::Total);
+        let leaf_of =
+            |colour: &Hsv| Amounts::of(lattice.leaf_of(colour.tint().srgb()).map(f64::from));
+        let pigments = &mut alike.pigments;
+        pigments.leaf = leaf_of(&spec.front.base);
+        pigments.alternate = leaf_of(&spec.front.alternate);
+        let green = |amounts: &Amounts| amounts.chlorophyll_ug_cm2.max(0.1);
+        let ratio = |colour: &Hsv| green(&leaf_of(colour)) / green(&pigments.leaf);
+        let (vein, back) = (ratio(&spec.front.vein), ratio(&spec.back.base));
+        (pigments.vein_chlorophyll, pigments.back_chlorophyll) = (vein.min(2.0), back.min(2.0));
+        let mixer = |state: &StateSpec| Mixer::new(&alike, state, petiole, petiole_reach);
+        let summer = StateSpec::default();
+        Self {
+            sides: [(&spec.front, FRONT), (&spec.back, BACK)]
+                .map(|(side, face)| Chosen::new(spec, side, face, petiole, petiole_reach)),
+            now: mixer(state),
+            sound: mixer(&summer).sound(),
+            changed: *state != summer || hurt,
+        }
+    }
+
+    /// What is seen of both sides of the blade, and through them. In summer it is what was chosen; what
+    /// the season, sickness and wounds do to the pigments is done to it, and what no pigments of a leaf
+    /// explain fades meanwhile.
+    pub(super) fn paint(&self, strip: &Strip, shades: &mut [Shades; 2]) {
+        self.now.paint(strip, shades);
+        let mut sound = [[[0.0; 8]; LANES]; 2];
+        if self.changed {
+            self.sound.paint(strip, &mut sound);
+        }
+        for (side, (shades, sound)) in shades.iter_mut().zip(&sound).enumerate() {
+            for i in 0..strip.len {
+                let tissue = strip.tissue(i);
+                let chosen = self.sides[side].blade(&tissue);
+                let alive = (1.0 - tissue.condition.season) * (1.0 - tissue.condition.death);
+                let kept = alive * (1.0 - tissue.injury.brown) * (1.0 - tissue.injury.pale);
+                for c in 0..3 {
+                    let now = shades[i][c];
+                    let seen = if self.changed {
+                        now + (chosen[c] - sound[i][c]) * kept
+                    } else {
+                        chosen[c]
+                    };
+                    let seen = seen.clamp(0.0, 1.0);
+                    shades[i][c] = seen;
+                    // No more light comes out than falls in; squares stand in for sRGB's curve, which
+                    // lies below them.
+                    shades[i][c + 3] = shades[i][c + 3].min((1.0 - seen * seen).max(0.0).sqrt());
+                }
+            }
+        }
+    }
+
+    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> [Shade; 2] {
+        std::array::from_fn(|side| self.sides[side].stalk(stalk, length, grain))
+    }
+}
 
 /// The colours of one side, ready to mix.
 #[derive(Debug)]
-pub(in crate::texture) struct Chosen {
+struct Chosen {
     r#type: ColourType,
     per_spread_mm: f32,
     undertone: f32,
@@ -35,15 +123,11 @@ pub(in crate::texture) struct Chosen {
     less_surface: Option<Box<[f32; 256]>>,
 }
 
-/// Dead tissue, and tissue with nothing left between its skins.
-const DEAD: Tint = Tint { hue: 26.0, saturation: 0.45, value: 0.40 };
-const MINED: Tint = Tint { hue: 52.0, saturation: 0.26, value: 0.74 };
-
 /// Share of light that the surface of a leaf mirrors, nearly the same at all wavelengths.
 const SURFACE: f64 = 0.038;
 
 impl Chosen {
-    pub(super) fn new(
+    fn new(
         spec: &ColourSpec,
         side: &SideColour,
         face: Face,
@@ -78,16 +162,14 @@ impl Chosen {
         }
     }
 
-    /// What is seen of the blade, and through it.
+    /// What is seen of the blade.
     #[inline]
-    pub(super) fn blade(&self, tissue: &Tissue) -> Shade {
-        let tint = self.tint(tissue);
-        let vein = tissue.vein.cover * tissue.vein.radius / (tissue.vein.radius + 0.12);
-        let mut shade = shade(tint, 0.92 - 0.6 * vein);
-        if let Some(curve) = &self.less_surface {
-            shade.reflected = shade.reflected.map(|value| curve[byte(value) as usize]);
+    fn blade(&self, tissue: &Tissue) -> [f32; 3] {
+        let seen = self.tint(tissue).srgb();
+        match &self.less_surface {
+            Some(curve) => seen.map(|value| curve[byte(value) as usize]),
+            None => seen,
         }
-        shade
     }
 
     /// The colour of the blade.
@@ -123,15 +205,12 @@ impl Chosen {
         core.value *= 0.90 + 0.16 * tissue.roundness() + 0.05 * m * (fine + tissue.grain);
         let near = 1.0 - smooth(0.0, self.petiole_reach, *from_base);
         core = core.towards(self.petiole, 0.5 * near);
-        tint = tint.towards(core, seen);
-        // What has died is brown, what was mined is pale.
-        tint = tint.towards(DEAD.unrolled(self.base), tissue.injury.brown);
-        tint.towards(MINED.unrolled(self.base), tissue.injury.pale)
+        tint.towards(core, seen)
     }
 
     /// The colour of the petiole; it is the midrib's at the blade and browner at the stem.
     #[inline]
-    pub(super) fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Shade {
+    fn stalk(&self, stalk: &StalkAt, length: f32, grain: f32) -> Shade {
         let round = stalk.dome / stalk.radius.max(1e-6);
         let blade = 1.0 - smooth(0.0, 2.0 * self.petiole_reach, stalk.along);
         let stem = smooth(0.72, 1.05, stalk.along / length.max(1e-6));

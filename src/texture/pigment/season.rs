@@ -27,6 +27,9 @@ parameters! {
     pub struct SenescenceSpec {
         /// Anthocyanin made in autumn: 0 for yellow leaves, 5 orange, 15 and more red.
         anthocyanin_ug_cm2: number(1.0, 0.0..=60.0, "µg/cm²"),
+        /// Share of the green still there in full colour: 0.3 for leaves that fall dull green, 0.8 for
+        /// evergreen ones, which turn only when they die.
+        chlorophyll_kept: number(0.0, 0.0..=1.0, ""),
         /// Share of the carotenoid still there in full colour.
         carotenoid_kept: number(0.8, 0.0..=1.0, ""),
         /// Brown at the end.
@@ -59,7 +62,7 @@ pub(in crate::texture) struct Condition {
 
 impl Condition {
     /// How dry it is, 0–1.
-    #[inline]
+    #[inline(always)]
     pub(in crate::texture) fn dryness(&self) -> f32 {
         smooth(0.55, 1.0, self.season).max(self.death)
     }
@@ -110,16 +113,13 @@ impl Course {
     }
 
     /// Whether every place is as in summer and well.
-    fn is_plain(&self) -> bool {
+    pub(in crate::texture) fn is_plain(&self) -> bool {
         self.season == 0.0 && self.sickness == 0.0
     }
 
     /// The condition of a place (mm).
-    #[inline]
+    #[inline(always)]
     pub(in crate::texture) fn at(&self, x: f32, y: f32, tissue: &Tissue) -> Condition {
-        if self.is_plain() {
-            return Condition::default();
-        }
         let place = &tissue.place;
         let [broad, middle, fine] = place.noise;
         let edge = place.edge.max(0.0);
@@ -134,16 +134,14 @@ impl Course {
             + self.islands * islands;
         let late = 1.0 - early.clamp(0.0, 1.0);
         let season = (self.season * (1.0 + self.spread) - self.spread * late).clamp(0.0, 1.0);
-        if self.sickness == 0.0 {
-            return Condition { season, ..Condition::default() };
-        }
         // Green stays along the veins; what lies farthest from them, and the rim, dies first.
         let between = tissue.panel() * smooth(0.0, 0.6, place.vein);
         let starved = 0.35 + 0.65 * between + 0.25 * middle;
         let chlorosis = (self.sickness * 1.3 * starved).clamp(0.0, 1.0);
         let ill = 1.7 * self.sickness - 1.25 + 0.75 * margin + 0.3 * broad + 0.25 * middle
             - 0.3 * by_vein;
-        Condition { season, chlorosis, death: smooth(0.0, 0.45, ill) }
+        let sick = if self.sickness > 0.0 { 1.0 } else { 0.0 };
+        Condition { season, chlorosis, death: sick * smooth(0.0, 0.45, ill) }
     }
 }
 
@@ -163,20 +161,32 @@ pub(super) struct Turned {
 }
 
 impl Turned {
+    #[inline(always)]
+    pub(super) fn array(&self) -> [f32; 5] {
+        [self.chlorophyll, self.carotenoid, self.anthocyanin, self.brown, self.structure]
+    }
+
+    #[inline(always)]
+    pub(super) fn of([chlorophyll, carotenoid, anthocyanin, brown, structure]: [f32; 5]) -> Self {
+        Self { chlorophyll, carotenoid, anthocyanin, brown, structure }
+    }
+
     /// At a place whose season is `s`.
     #[inline]
     pub(super) fn at(s: f32, spec: &SenescenceSpec) -> Self {
         let end = smooth(0.56, 1.0, s);
-        let kept = spec.carotenoid_kept as f32;
+        let (green, kept) = (spec.chlorophyll_kept as f32, spec.carotenoid_kept as f32);
+        // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
+        let left = 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0));
         Self {
-            // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
-            chlorophyll: 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0)),
+            chlorophyll: left + green * (1.0 - left) * (1.0 - end),
             carotenoid: (1.0 - (1.0 - kept) * smooth(0.2, 0.6, s)) * (1.0 - 0.45 * end),
             anthocyanin: spec.anthocyanin_ug_cm2 as f32
-                * smooth(0.08, 0.62, s)
+                * 0.5
+                * (smooth(0.04, 0.66, s) + ((s - 0.04) / 0.62).clamp(0.0, 1.0))
                 * (1.0 - 0.88 * end),
             brown: spec.brown as f32 * end,
-            structure: 0.25 * smooth(0.15, 0.6, s) + 0.3 * end,
+            structure: 0.4 * smooth(0.0, 0.68, s) + 0.15 * end,
         }
     }
 }

@@ -1,8 +1,10 @@
-//! The card in Blender, where Blender's Python module `bpy` is installed:
+//! The cards in Blender, where Blender's Python module `bpy` is installed:
 //! `VENATION_BPY=/path/to/python cargo test --test suite -- --ignored blender`.
 
+use std::path::Path;
 use std::process::Command;
 
+use serde_json::Value;
 use venation::io::write::{Overwrite, write_files};
 use venation::io::{LeafFiles, encode_leaf};
 use venation::raster::Grid;
@@ -10,13 +12,16 @@ use venation::spec::Output;
 
 use super::{SIZE, SmallLeaf};
 
-/// Imports the card, reports its materials, and takes a picture from either side by even light.
+/// Imports a card, reports its materials, and takes a picture from either side by even light.
 /// It leaves by `_exit`, since the module can crash while Python shuts down.
 const SCRIPT: &str = r#"
 import bpy, json, os, sys
-folder = sys.argv[1]
+folder, card = sys.argv[1], sys.argv[2]
 bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.wm.obj_import(filepath=folder + "/oak.obj")
+if card.endswith(".glb"):
+    bpy.ops.import_scene.gltf(filepath=folder + "/" + card)
+else:
+    bpy.ops.wm.obj_import(filepath=folder + "/" + card)
 report = {"materials": {}, "pictures": {}}
 for material in bpy.data.materials:
     shader = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
@@ -24,10 +29,14 @@ for material in bpy.data.materials:
         links = shader.inputs[name].links
         if not links: return None
         node = links[0].from_node
-        return [os.path.basename(node.image.filepath) if node.type == "TEX_IMAGE" else node.type,
-                links[0].from_socket.name]
+        picture = node.type == "TEX_IMAGE" and (node.image.filepath or node.image.name)
+        return [os.path.basename(picture) if picture else node.type, links[0].from_socket.name]
+    spaces = [n.image.colorspace_settings.name for n in material.node_tree.nodes
+              if n.type == "TEX_IMAGE"]
     report["materials"][material.name] = {
         "colour": source("Base Color"), "alpha": source("Alpha"),
+        "normal": source("Normal"), "spaces": sorted(spaces),
+        "metallic": shader.inputs["Metallic"].default_value,
         "roughness": shader.inputs["Roughness"].default_value,
         "specular": shader.inputs["Specular IOR Level"].default_value,
         "transmission": shader.inputs["Transmission Weight"].default_value}
@@ -62,10 +71,57 @@ with open(folder + "/report.json", "w") as file: json.dump(report, file)
 os._exit(0)
 "#;
 
+/// What Blender makes of a card in a folder; `None`, said aloud, where there is no Blender.
+fn shown(folder: &Path, card: &str) -> Option<Value> {
+    let Ok(python) = std::env::var("VENATION_BPY") else {
+        eprintln!("skipped: set VENATION_BPY to a Python that has bpy (pip install bpy)");
+        return None;
+    };
+    let mut command = Command::new(python);
+    let run = command.args(["-c", SCRIPT]).arg(folder).arg(card).output().expect("Python starts");
+    let report = std::fs::read(folder.join("report.json"))
+        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&run.stderr)));
+    Some(serde_json::from_slice(&report).expect("a report"))
+}
+
+#[test]
+#[ignore = "needs Blender's bpy: set VENATION_BPY to a Python that has it"]
+fn blender_shows_a_glb_with_its_pictures() {
+    let folder = crate::support::fresh();
+    let arguments = ["generate", "linden", "--size", "256", "--format", "glb", "-o", "leaf"];
+    crate::support::succeed(folder.path(), &arguments);
+    let leaf = folder.path().join("leaf");
+    let Some(report) = shown(&leaf, "tilia-cordata.glb") else { return };
+    for side in ["front", "back"] {
+        let material = &report["materials"][format!("tilia-cordata_{side}")];
+        let colour = material["colour"][0].as_str().unwrap_or_default();
+        assert!(colour.starts_with(&format!("tilia-cordata_{side}_BaseColor")), "{material}");
+        assert!(!material["alpha"].is_null() && !material["normal"].is_null(), "{material}");
+        assert_eq!(material["metallic"], 0.0, "{material}");
+        assert_eq!(material["transmission"], 0.0, "{material}");
+        let spaces = material["spaces"].as_array().expect("colour spaces");
+        let colours = spaces.iter().filter(|space| *space == "sRGB").count();
+        assert_eq!((colours, spaces.len() > colours), (1, true), "{material}");
+    }
+    let opacity = image::open(leaf.join("tilia-cordata_Opacity.png")).unwrap().into_luma8();
+    for side in ["front", "back"] {
+        let picture = image::open(leaf.join(format!("{side}.png"))).unwrap().into_rgba8();
+        let (mut apart, mut covered, mut green) = (0, 0, 0);
+        for (x, y, pixel) in picture.enumerate_pixels() {
+            let x = if side == "front" { 4 * x + 2 } else { 255 - (4 * x + 2) };
+            let expected = opacity.get_pixel(x, 4 * y + 2).0[0] > 127;
+            apart += u32::from((pixel.0[3] > 127) != expected);
+            covered += u32::from(expected);
+            green += u32::from(pixel.0[3] > 127 && pixel.0[1] > pixel.0[2]);
+        }
+        assert!(apart < covered / 8, "{side}: {apart} of {covered} pixels differ");
+        assert!(green > covered * 8 / 10, "{side}: {green} of {covered} are green");
+    }
+}
+
 #[test]
 #[ignore = "needs Blender's bpy: set VENATION_BPY to a Python that has it"]
 fn blender_shows_both_sides_cut_out() {
-    let python = std::env::var("VENATION_BPY").expect("VENATION_BPY names a Python with bpy");
     // Red in front, blue behind, and a silhouette that tells left from right and up from down.
     let mut leaf = SmallLeaf::new("oak");
     let covered = |x: usize, y: usize| x > SIZE / 4 && (x < SIZE / 2 || y > SIZE / 2);
@@ -82,10 +138,7 @@ fn blender_shows_both_sides_cut_out() {
     let standard = Output::standard();
     let files = LeafFiles { output: &standard, ..leaf.files() };
     write_files(folder.path(), &encode_leaf(&files), Overwrite::Refuse).unwrap();
-    let run = Command::new(python).args(["-c", SCRIPT]).arg(folder.path()).output().unwrap();
-    let report = std::fs::read(folder.path().join("report.json"))
-        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&run.stderr)));
-    let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+    let Some(report) = shown(folder.path(), "oak.obj") else { return };
 
     for (name, specular) in [("oak_front", 0.3), ("oak_back", 0.1)] {
         let material = &report["materials"][name];

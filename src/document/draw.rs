@@ -39,7 +39,8 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     })?;
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
-    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0) {
+    let is_own = document.seed == Some(seed.0) && !document.varies_own_seed;
+    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0 && !is_own) {
         spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
     }
     Ok(spec)

@@ -16,6 +16,7 @@ use super::guide::{Guide, Lattice, Place, between, mixed};
 use crate::margin::Margin;
 use crate::parameter::parameters;
 use crate::raster::Grid;
+use crate::raster::components::Components;
 use crate::raster::contour::contours;
 use crate::seed::{Rng, Seed, Stage};
 use crate::units::TextureFrame;
@@ -81,6 +82,9 @@ const PALE: usize = 3;
 /// Far from any gap (mm).
 const FAR_MM: f32 = -10.0;
 
+/// What has fallen off lies so deep in the gap (mm).
+const FALLEN_MM: f32 = 1.0;
+
 /// Tissue this near to a gap has died (mm).
 const RIM_MM: f32 = 0.45;
 
@@ -127,6 +131,7 @@ impl Wounds {
         blade.tears((spec.tears * 10.0).round() as usize);
         blade.bites(spec.margin_bites);
         blade.holes(spec.holes);
+        blade.let_fall();
         Some(Self { side: guide.side(), per_texel: guide.per_texel(), per_mm, nodes: blade.nodes })
     }
 
@@ -298,6 +303,42 @@ impl<'a> Blade<'a> {
                 && self.place(node).edge > 0.0
         };
         patch.iter().filter(|entry| taken(entry)).count()
+    }
+
+    /// Takes what hangs on nothing any more: of every piece that the whole blade had, the largest part
+    /// stays. Primary veins hold together, however fine they are beside the nodes.
+    fn let_fall(&mut self) {
+        let (side, spacing) = (self.guide.side(), self.lattice.spacing() as f32);
+        let pieces = |held: &dyn Fn(usize) -> bool| {
+            let mask = (0..side * side).map(|i| self.place(i).edge > 0.0 && held(i)).collect();
+            Components::of(&Grid::from_values(side, side, mask))
+        };
+        let whole = pieces(&|_| true);
+        let left = pieces(&|i| self.nodes[i][GONE] <= 0.0 || self.primary[i] < 1.5 * spacing);
+        let mut largest = vec![0_usize; whole.areas.len()];
+        let pairs = || whole.labels.values().iter().zip(left.labels.values());
+        for (&piece, &part) in pairs().filter(|(_, part)| **part > 0) {
+            let best = &mut largest[piece as usize];
+            if *best == 0 || left.areas[part as usize] > left.areas[*best] {
+                *best = part as usize;
+            }
+        }
+        let fallen: Vec<usize> = pairs()
+            .enumerate()
+            .filter(|&(_, (&piece, &part))| part > 0 && largest[piece as usize] != part as usize)
+            .map(|(i, _)| i)
+            .collect();
+        for i in fallen {
+            let (x, y) = (i % side, i / side);
+            for row in y.saturating_sub(2)..(y + 3).min(side) {
+                for node in (x.saturating_sub(2)..(x + 3).min(side)).map(|x| row * side + x) {
+                    // Past the margin, too: what is read between the nodes would leave its rim.
+                    if node == i || self.place(node).edge <= 0.0 {
+                        self.nodes[node][GONE] = self.nodes[node][GONE].max(FALLEN_MM);
+                    }
+                }
+            }
+        }
     }
 
     fn apply(&mut self, patch: &[(usize, f32)], layer: usize) {

@@ -312,6 +312,45 @@ fn wounds_take_the_share_they_are_asked_for_and_spare_what_they_should() {
 }
 
 #[test]
+fn eaten_leaves_hang_together_and_their_veins_end_at_the_gaps() {
+    let mut settings = Settings::of_size(384);
+    settings.damage = DamageSpec { holes: 0.25, margin_bites: 0.25, ..DamageSpec::default() };
+    for seed in 1..=3 {
+        settings.damage.seed = seed;
+        let set = painted(&settings);
+        let solid = set.front.base_colour.map(|colour| colour[3] > 127);
+        let parts = venation::raster::components::Components::of(&solid);
+        let of_size = parts.areas[1..].iter().filter(|&&area| area > 12).count();
+        assert_eq!(of_size, 1, "{:?}", parts.areas);
+    }
+    let folder = fresh();
+    let arguments = ["generate", "linden", "--size", "256", "--damage", "holes=0.25"];
+    let files = ["--maps", "opacity", "--format", "json,svg", "-o", "eaten"];
+    succeed(folder.path(), &[&arguments[..], &files].concat());
+    let open = |name: &str| folder.path().join("eaten").join(name);
+    let opacity = image::open(open("tilia-cordata_Opacity.png")).expect("a map").into_luma8();
+    let json = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(open(name)).expect("a file")).expect("JSON")
+    };
+    let (veins, manifest) = (json("tilia-cordata_veins.json"), json("manifest.json"));
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    let front = &manifest["uv_from_mm"]["front"];
+    let pixel = |mm: f64, axis: usize| {
+        (mm * number(&front["scale"][axis]) + number(&front["offset"][axis])) * 256.0
+    };
+    let nodes = veins["nodes"].as_array().expect("nodes");
+    let bare = nodes.iter().filter(|node| {
+        let (x, y) = (pixel(number(&node["x"]), 0), 256.0 - pixel(number(&node["y"]), 1));
+        // A node on the edge of a gap may lie in a texel that is all but empty.
+        let around = [(0.0, 0.0), (0.7, 0.0), (-0.7, 0.0), (0.0, 0.7), (0.0, -0.7)];
+        let open = |(dx, dy): &(f64, f64)| opacity.get_pixel((x + dx) as u32, (y + dy) as u32).0[0];
+        around.iter().all(|place| open(place) == 0)
+    });
+    let bare = bare.count();
+    assert!(nodes.len() > 500 && bare < nodes.len() / 500, "{bare} of {}", nodes.len());
+}
+
+#[test]
 fn skeletons_keep_their_veins_and_another_seed_wounds_elsewhere() {
     let mut settings = Settings::of_size(384);
     settings.damage.skeletonise = 1.0;

@@ -62,26 +62,30 @@ pub(super) fn print(out: &mut dyn Write, line: &Line) -> std::io::Result<()> {
     if let Some(floor) = line.floor_seconds {
         more += &format!("  (floor: {floor:.4} s, {:.2} times that)", m.cpu_seconds / floor);
     }
+    if m.coincident > 0 {
+        more += &format!("  ({} nodes where another is)", m.coincident);
+    }
     writeln!(out, "{}  {}{more}", columns(cells), m.unreached)
 }
 
 /// All lines for a spreadsheet.
 pub(super) fn csv(lines: &[Line]) -> String {
     let mut text = String::from(
-        "name,printed_seconds,floor_seconds,auxins,nodes,joins,steps,cpu_seconds,seconds,\
+        "name,printed_seconds,floor_seconds,auxins,nodes,joins,coincident,steps,cpu_seconds,seconds,\
          bytes_per_node,ns_per_source_step,outside,too_young,out_of_reach,hidden,unfinished\n",
     );
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for line in lines {
         let (m, left) = (&line.measure, &line.measure.unreached);
         text += &format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
             line.name,
             number(line.printed_seconds),
             number(line.floor_seconds),
             m.sources,
             m.nodes,
             m.joins,
+            m.coincident,
             m.steps,
             m.cpu_seconds,
             m.seconds,

@@ -14,6 +14,8 @@
 //! margin without detail, in steps, until nothing touches.
 
 mod cut;
+mod node;
+mod ornament;
 mod place;
 mod ripple;
 mod run;
@@ -27,7 +29,8 @@ use super::lobes::{LobeRecord, LobeSide};
 use super::{Landmark, MarginError, MarginSpec, Outline, curve};
 use crate::geometry::polygon;
 use crate::seed::{Seed, Stage};
-use cut::{Cutter, Node};
+use cut::Cutter;
+use node::Node;
 use place::{Draws, Edge};
 pub use place::{Tooth, ToothForm};
 use run::{Run, Span};

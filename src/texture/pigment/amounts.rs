@@ -251,7 +251,9 @@ impl Mixer {
     fn behind(&self, mut mix: Mix) -> Mix {
         mix[0] *= self.back_chlorophyll;
         mix[1] *= 0.5 + 0.5 * self.back_chlorophyll;
-        mix[2] = mix[2] * (0.25 + 0.5 * self.back_chlorophyll) + self.back_red;
+        // Red felt bleaches as the leaf turns brown.
+        let felt = self.back_red / (1.0 + mix[3]);
+        mix[2] = mix[2] * (0.25 + 0.5 * self.back_chlorophyll) + felt;
         mix[3] = 0.85 * mix[3] + self.back_brown;
         mix[4] += self.back_structure;
         mix

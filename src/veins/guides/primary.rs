@@ -102,6 +102,8 @@ fn palmate(
                     _ => course.along_margin(ground, spec.reach.max(0.88), 0.4),
                 }
             } else {
+                // Drawn all the same: what comes after must not hang on how many lobes there are.
+                curve::wavering(&[], 0.0, rng);
                 continue;
             };
             let amplitude = 0.5 * spec.irregularity * WANDER * curve::length(&line);

@@ -271,7 +271,7 @@ impl Fitted {
         document.insert("name", text(self.name.clone()), "fit");
         document.insert("title", text(format!("{}, fitted", self.name)), "fit");
         document.seed = Some(1);
-        let _ = vary;
+        document.vary = (vary > 0.0).then_some(vary);
         Ok(document)
     }
 

@@ -21,8 +21,9 @@ Examples:
   venation inspect cleared-leaf.png                   a real network, veins white on black or back
   venation inspect cleared-leaf.png --px-per-mm 252   the same with lengths in mm
   venation inspect scan.jpg --px-per-mm 11.81         every blade on a scan, with its area and length
+  venation inspect scan.jpg --silhouettes scan.svg    and as curves of few control points
 
-A picture whose largest part is on the whole narrower than 2 % of its extent is a net of veins, any other shows blades; --blades and --veins settle it. Areas are those within the outline, petiole and holes (listed apart) included; length is the greatest extent, base to apex leaves the petiole away.
+A picture whose largest part is on the whole narrower than 2 % of its extent is a net of veins, any other shows blades; --blades and --veins settle it. Areas are those within the outline, petiole and holes (listed apart) included; length is the greatest extent, base to apex leaves the petiole away. Points are the control points of a quadratic B-spline, corners kept, that stays within --tolerance of the boundary; error is its greatest distance.
 
 The twenty rows come first: measures free of scale, each with the band that real leaves lie in. A row \
 counts when all its values are inside. \
@@ -46,6 +47,15 @@ pub(crate) struct Args {
     /// Scale of a picture: lengths are in mm then.
     #[arg(long, value_name = "N")]
     px_per_mm: Option<f64>,
+    /// Write the blades of a picture as curves of few control points, corners kept.
+    #[arg(long, value_name = "FILE.svg")]
+    silhouettes: Option<PathBuf>,
+    /// How far these curves may lie from the boundary, in pixels.
+    #[arg(long, value_name = "PX", default_value = "1")]
+    tolerance: f64,
+    /// Overwrite a file of an earlier run.
+    #[arg(long)]
+    force: bool,
     /// The rows that count: `reticulate`, `dichotomous` or `parallel`. By itself: what the veins look like.
     #[arg(long, value_name = "KIND", value_parser = architecture)]
     architecture: Option<Architecture>,
@@ -63,7 +73,17 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         let problem = format!("--px-per-mm: {scale} is not between 0.001 and 1000000");
         return Err(Failure::Input(problem));
     }
-    if args.shows_blades()? {
+    if !(0.05..=1000.0).contains(&args.tolerance) {
+        let problem = format!("--tolerance: {} is not between 0.05 and 1000 px", args.tolerance);
+        return Err(Failure::Input(problem));
+    }
+    if args.silhouettes.as_ref().is_some_and(|file| file.extension().is_none_or(|e| e != "svg")) {
+        return Err(Failure::Input("--silhouettes: curves are written as .svg".into()));
+    }
+    if args.silhouettes.is_some() && args.veins {
+        return Err(Failure::Input("--silhouettes draws blades; leave --veins away".into()));
+    }
+    if args.silhouettes.is_some() || args.shows_blades()? {
         return blades::run(args, context);
     }
     let read = network::read(&args.path, args.px_per_mm)

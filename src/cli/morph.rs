@@ -17,6 +17,7 @@ use venation::raster::draw::{Canvas, Rgba};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::units::TextureFrame;
+use venation::veins::guides::PrimaryType;
 
 use super::leaf_args::{self, read_document};
 use super::progress::Bar;
@@ -32,7 +33,8 @@ Examples:
 A folder holds frame_0001/leaf.svg, leaf.png and leaf.toml (from which `generate` makes that leaf) for
 every frame, strip.png with all of them, and animation.png (APNG). All frames have one scale, so that a
 growing leaf grows. A reference of weight 0 counts for nothing; the larger its weight, the nearer the
-path comes to it. With --veins the veins are laid by TO's architecture, their numbers in between.")]
+path comes to it. With --veins all frames have the architecture of TO, or of FROM when it alone has a \
+single midrib, with numbers in between.")]
 pub(crate) struct Args {
     /// The first leaf: a preset or a TOML file.
     #[arg(value_name = "FROM")]
@@ -198,6 +200,7 @@ fn make(
     let mut bar = Bar::new(context.quiet, "");
     let last = args.frames - 1;
     let keeps_teeth = same_teeth(path)?;
+    let laid = &architecture(leaves).veins.guides;
     let one = |frame: usize| -> Result<Frame, Failure> {
         let u = frame as f64 / last as f64;
         let named = |problem: Error| Failure::Input(format!("frame {}: {problem}", frame + 1));
@@ -205,6 +208,11 @@ fn make(
         spec.margin = path.spec_at(u).map_err(|error| named(error.into()))?;
         spec.texture.size_px = args.size;
         spec.output.maps = "basecolor".into();
+        // One architecture for all frames, so that secondaries keep their number.
+        let guides = &mut spec.veins.guides;
+        (guides.primary, guides.primary_count) = (laid.primary, laid.primary_count);
+        (guides.secondary, guides.secondary_count) = (laid.secondary, laid.secondary_count);
+        (guides.lateral_count, guides.rim) = (laid.lateral_count, laid.rim);
         if !keeps_teeth {
             // A vein that looked for a tooth would jump to another one on the way.
             spec.veins.guides.tooth_reach = 0.0;
@@ -228,6 +236,14 @@ fn make(
         bar.report(Progress { stage: "frames", step, steps, nodes: 0, sources: 0 });
     }
     Ok(frames)
+}
+
+/// The end whose veins all frames have: the last leaf; the first when it alone has a single midrib. Veins
+/// beside a midrib block each other as the blade changes, and come and go.
+fn architecture(leaves: &[LeafSpec]) -> &LeafSpec {
+    let (first, last) = (&leaves[0], &leaves[leaves.len() - 1]);
+    let is_pinnate = |leaf: &LeafSpec| leaf.veins.guides.primary == PrimaryType::Pinnate;
+    if is_pinnate(first) && !is_pinnate(last) { first } else { last }
 }
 
 /// Whether both ends have the same teeth of the first order on each side, none included.

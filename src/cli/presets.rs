@@ -2,7 +2,7 @@
 
 use clap::Subcommand;
 use venation::document::Comments;
-use venation::presets::{self, PRESETS};
+use venation::presets::{self, FIGURES, PRESETS};
 
 use super::{Context, Failure};
 
@@ -10,11 +10,15 @@ use super::{Context, Failure};
 #[command(after_help = "\
 Examples:
   venation presets                       names and descriptions
+  venation presets --figures             shapes of the figures of the papers
   venation presets show beech            complete TOML with the meaning and limits of every key
   venation presets show beech > my.toml  a copy to edit; venation generate my.toml")]
 pub(crate) struct Args {
     #[command(subcommand)]
     command: Option<PresetCommand>,
+    /// The shapes of figures instead of the species.
+    #[arg(long)]
+    figures: bool,
     /// The list as JSON.
     #[arg(long)]
     json: bool,
@@ -37,16 +41,17 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         write!(context.stdout, "# {}: {}\n{text}", preset.common, preset.about)?;
         return Ok(());
     }
+    let listed = if args.figures { FIGURES } else { PRESETS };
     if args.json {
-        let list: Vec<_> = PRESETS
+        let list: Vec<_> = listed
             .iter()
             .map(|p| serde_json::json!({ "name": p.name, "common": p.common, "about": p.about }))
             .collect();
         writeln!(context.stdout, "{}", serde_json::to_string_pretty(&list).expect("plain data"))?;
         return Ok(());
     }
-    for preset in PRESETS {
-        writeln!(context.stdout, "{:22} {:10} {}", preset.name, preset.common, preset.about)?;
+    for preset in listed {
+        writeln!(context.stdout, "{:24} {:10} {}", preset.name, preset.common, preset.about)?;
     }
     Ok(())
 }

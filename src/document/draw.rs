@@ -1,8 +1,10 @@
-//! From a document to one leaf: a value drawn for every range.
+//! From a document to one leaf: a value drawn for every range. A lobe that stands on each side is drawn
+//! twice and becomes two.
 
 use super::value::{self, from_plain};
 use super::{Document, DocumentError, Entry, Value, parameters, records};
 use crate::margin::instances;
+use crate::margin::lobes::LobeSide;
 use crate::parameter::Parameter;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
@@ -19,11 +21,14 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
         let mut items = Vec::with_capacity(count);
         for number in 1..=count {
             complete(document, list, number, count)?;
-            let mut record = toml::Table::new();
-            for (key, _) in &keys {
-                insert(&mut record, key, value_of(&format!("{list}.{number}.{key}")));
+            let record = Record { document, list, number, keys: &keys };
+            let right = record.drawn(seed);
+            if right.get(SIDE).and_then(toml::Value::as_str) == Some(LobeSide::Each.word()) {
+                let left = record.drawn_left(&right, asymmetry(&tree), seed);
+                items.extend([on(right, LobeSide::Right), on(left, LobeSide::Left)]);
+            } else {
+                items.push(toml::Value::Table(right));
             }
-            items.push(toml::Value::Table(record));
         }
         insert(&mut tree, list, toml::Value::Array(items));
     }
@@ -34,10 +39,75 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     })?;
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
-    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0) {
+    let is_own = document.seed == Some(seed.0) && !document.varies_own_seed;
+    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0 && !is_own) {
         spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
     }
     Ok(spec)
+}
+
+/// A record of a document that is being drawn.
+struct Record<'a> {
+    document: &'a Document,
+    list: &'static str,
+    number: usize,
+    keys: &'a [(&'static str, &'static Parameter)],
+}
+
+impl Record<'_> {
+    fn key(&self, key: &str) -> String {
+        format!("{}.{}.{key}", self.list, self.number)
+    }
+
+    fn value(&self, key: &str) -> Value {
+        self.document.value(&self.key(key)).expect("every parameter has a default")
+    }
+
+    fn drawn(&self, seed: Seed) -> toml::Table {
+        let mut record = toml::Table::new();
+        for (key, _) in self.keys {
+            insert(&mut record, key, drawn(&self.value(key), &self.key(key), seed));
+        }
+        record
+    }
+
+    /// What stands on the left where `right` stands on the right: its like at asymmetry 0, drawn for
+    /// itself at 1.
+    fn drawn_left(&self, right: &toml::Table, asymmetry: f64, seed: Seed) -> toml::Table {
+        let mut left = right.clone();
+        for (key, _) in self.keys {
+            let stream = self.key(&format!("{}.{key}", LobeSide::Left.word()));
+            let own = drawn(&self.value(key), &stream, seed);
+            let like = drawn(&self.value(key), &self.key(key), seed);
+            insert(&mut left, key, between(&like, own, asymmetry));
+        }
+        left
+    }
+}
+
+/// Where a record of a lobe says on which side it stands.
+const SIDE: &str = "side";
+
+fn on(mut record: toml::Table, side: LobeSide) -> toml::Value {
+    record.insert(SIDE.into(), toml::Value::String(side.word().into()));
+    toml::Value::Table(record)
+}
+
+/// How far the left side of the margin is its own, as drawn.
+fn asymmetry(tree: &toml::Table) -> f64 {
+    let margin = tree.get("margin").and_then(|margin| margin.get("asymmetry"));
+    margin.and_then(toml::Value::as_float).unwrap_or(1.0)
+}
+
+/// A number between that of the right side, at 0, and the left side's own, at 1.
+fn between(right: &toml::Value, own: toml::Value, asymmetry: f64) -> toml::Value {
+    match (right, &own) {
+        (toml::Value::Float(right), toml::Value::Float(own)) => {
+            let mixed = right + (own - right) * asymmetry;
+            toml::Value::Float((mixed * ROUNDING).round() / ROUNDING)
+        }
+        _ => own,
+    }
 }
 
 /// Refuses a list in which a record is missing.

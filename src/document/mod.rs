@@ -62,6 +62,10 @@ pub struct Document {
     /// By up to how many percent every number of the margin is perturbed, on top of the ranges
     /// (`vary = 20`); see [`crate::margin::instances`].
     pub vary: Option<f64>,
+    /// Whether the margin is perturbed for [`seed`](Self::seed) too: when asked for by
+    /// [`set`](Self::set). A file that names a seed and `vary` is the leaf of that seed as it stands, and
+    /// the percentage says how far those of other seeds differ from it.
+    varies_own_seed: bool,
 }
 
 impl Document {
@@ -90,6 +94,7 @@ impl Document {
     pub fn set(&mut self, assignment: &str, origin: &str) -> Result<(), DocumentError> {
         if let Some(percent) = parse::variation(assignment, origin)? {
             self.vary = Some(percent);
+            self.varies_own_seed = true;
             return Ok(());
         }
         let (key, value) = parse::assignment(assignment, origin)?;
@@ -130,7 +135,9 @@ impl Document {
         }
         self.entries.extend(over.entries);
         self.seed = over.seed.or(self.seed);
-        self.vary = over.vary.or(self.vary);
+        if over.vary.is_some() {
+            (self.vary, self.varies_own_seed) = (over.vary, over.varies_own_seed);
+        }
     }
 
     /// Gives the whole outline anew: forgets every `margin.` key that was given and sets all of them.

@@ -2,6 +2,8 @@
 
 pub mod alignment;
 pub mod bspline;
+mod chains;
+pub mod compact;
 pub mod deviation;
 pub mod minimise;
 pub mod noise;

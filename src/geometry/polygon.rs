@@ -3,7 +3,7 @@
 //! A polygon is a slice of vertices; the first is not repeated at the end. Every function is total
 //! on finite input and linear in the number of vertices, unless it says otherwise.
 
-use super::{DVec2, segments::SegmentIndex};
+use super::{DVec2, chains, segments::SegmentIndex};
 
 /// Twice the signed area of the triangle a, b, c: positive when they turn anticlockwise.
 #[must_use]
@@ -97,9 +97,12 @@ pub fn is_convex(polygon: &[DVec2]) -> bool {
 }
 
 /// Where the outline first touches itself, neighbours at their shared vertex excepted; `None` when
-/// it is simple. Near-linear for outlines of even edges.
+/// it is simple. Near-linear for outlines of even edges, and quicker still for smooth simple ones.
 #[must_use]
 pub fn self_crossing(polygon: &[DVec2]) -> Option<DVec2> {
+    if chains::touching(polygon) == Some(false) {
+        return None;
+    }
     let index = SegmentIndex::of_polygon(polygon);
     (0..polygon.len()).find_map(|i| {
         let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
@@ -128,7 +131,7 @@ pub fn crossings(polygon: &[DVec2]) -> Vec<(usize, usize)> {
 }
 
 /// Whether two edges touch; neighbours only when one folds back on the other.
-fn edges_touch(polygon: &[DVec2], i: usize, j: usize) -> bool {
+pub(super) fn edges_touch(polygon: &[DVec2], i: usize, j: usize) -> bool {
     let n = polygon.len();
     if j == i {
         return false;

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use glam::DVec2;
 
-use crate::geometry::Rect;
+use super::silhouettes;
+use crate::geometry::{Rect, compact};
 use crate::margin::Margin;
 use crate::margin::fit::Fit;
 use crate::raster::Grid;
@@ -36,18 +37,22 @@ pub fn picture(real: &Margin, fit: &Fit, side_px: usize) -> Grid<Rgba> {
     canvas.into_picture()
 }
 
-/// Both margins as vectors in true size.
+/// The real margin is drawn as curves within this of it (lengths).
+const CURVE: f64 = 0.001;
+
+/// Both margins as vectors in true size, the real one as curves.
 #[must_use]
 pub fn svg(real: &Margin, fit: &Fit) -> String {
     let page = page(real, fit);
     let size = page.size();
-    let path = |margin: &Margin| {
-        let mut path = String::from("M");
-        for p in margin.outline() {
-            let _ = write!(path, " {:.3},{:.3}", p.x - page.min.x, page.max.y - p.y);
-        }
-        path + " Z"
-    };
+    let place = |p: DVec2| (p.x - page.min.x, page.max.y - p.y);
+    let mut fitted = String::from("M");
+    for &p in fit.margin.outline() {
+        let (x, y) = place(p);
+        let _ = write!(fitted, " {x:.3},{y:.3}");
+    }
+    let apex = real.apex_index();
+    let curve = compact::compact(real.outline(), &[0, apex], CURVE * real.length_mm());
     let hex = |[r, g, b, _]: Rgba| format!("#{r:02x}{g:02x}{b:02x}");
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
@@ -59,10 +64,10 @@ pub fn svg(real: &Margin, fit: &Fit) -> String {
         size.x,
         size.y,
         hex(REAL),
-        path(real),
+        silhouettes::path(&curve, place),
         hex(FITTED),
         size.max_element() / 300.0,
-        path(&fit.margin)
+        fitted + " Z"
     )
 }
 

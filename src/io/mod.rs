@@ -23,6 +23,7 @@ pub mod network;
 pub mod obj;
 pub mod outline;
 mod remains;
+pub mod silhouettes;
 pub mod svg;
 pub mod tables;
 pub mod usda;

@@ -17,7 +17,7 @@ use crate::geometry::{Rect, polygon};
 use crate::margin::blades::{self, Blades};
 use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
-use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch};
+use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch, tidy};
 use crate::parameter::words;
 use crate::seed::Seed;
 
@@ -191,7 +191,7 @@ fn read(path: &Path, options: &OutlineOptions) -> Result<ImportedOutline, Outlin
         Some(format) => from_picture(path, format, options)?,
         None => from_text(path, file, &head, options)?,
     };
-    thin(&mut found.traced);
+    tidy::thin(&mut found.traced);
     mend(&mut found)?;
     place(found, options)
 }
@@ -278,20 +278,6 @@ fn from_text(
     Ok(Found2d { traced, kind: OutlineKind::Polygon, unit: 1.0, y_down })
 }
 
-/// Outlines of more points than this are thinned: 8192 texels show no more.
-const MANY_POINTS: usize = 16_384;
-
-/// Drops points that crowd.
-fn thin(traced: &mut Traced) {
-    let outline = &mut traced.outline;
-    if outline.len() > MANY_POINTS {
-        let given = outline.len();
-        let least = polygon::perimeter(outline) / MANY_POINTS as f64;
-        *outline = polygon::without_short_edges(outline, least);
-        traced.notes.push(format!("{given} points thinned to {}", outline.len()));
-    }
-}
-
 /// Takes small loops out of an outline that crosses itself.
 fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
     let outline = &mut found.traced.outline;
@@ -302,8 +288,7 @@ fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
     if area.abs() < 1e-5 * size.max_element().powi(2) {
         return Err(OutlineProblem::content("the points lie on a line and enclose no area"));
     }
-    let mended = without_loops(outline);
-    match mended {
+    match tidy::without_loops(outline) {
         Some(mended) => {
             *outline = mended;
             let at = at * found.unit;
@@ -318,46 +303,6 @@ fn mend(found: &mut Found2d) -> Result<(), OutlineProblem> {
             place_name(at * found.unit)
         ))),
     }
-}
-
-/// The polygon without its loops, when they are small: a crossing pair of edges is replaced by the
-/// larger of the two polygons that it makes, up to `MOST_LOOPS` times.
-fn without_loops(outline: &[DVec2]) -> Option<Vec<DVec2>> {
-    const MOST_LOOPS: usize = 16;
-    const MOST_POINTS: usize = 4000;
-    /// All loops together may have this share of the area.
-    const MOST_LOST: f64 = 0.02;
-    if outline.len() > MOST_POINTS {
-        return None;
-    }
-    let whole = polygon::signed_area(outline).abs();
-    let mut rest = outline.to_vec();
-    for _ in 0..MOST_LOOPS {
-        let n = rest.len();
-        let crossing = (0..n).find_map(|i| {
-            let (a, b) = (rest[i], rest[(i + 1) % n]);
-            (i + 2..n).filter(|&j| (j + 1) % n != i).find_map(|j| {
-                let (c, d) = (rest[j], rest[(j + 1) % n]);
-                polygon::segments_touch(a, b, c, d).then(|| {
-                    let (u, v) = ((b - a).perp_dot(c - a), (b - a).perp_dot(d - a));
-                    let p = if u == v { c } else { c.lerp(d, (u / (u - v)).clamp(0.0, 1.0)) };
-                    (i, j, p)
-                })
-            })
-        });
-        let Some((i, j, p)) = crossing else { break };
-        let mut inner = vec![p];
-        inner.extend_from_slice(&rest[i + 1..=j]);
-        let mut outer = rest[..=i].to_vec();
-        outer.push(p);
-        outer.extend_from_slice(&rest[j + 1..]);
-        let area = |polygon: &[DVec2]| polygon::signed_area(polygon).abs();
-        rest = if area(&inner) > area(&outer) { inner } else { outer };
-        rest.dedup();
-    }
-    let kept = polygon::signed_area(&rest).abs();
-    let small = (whole - kept).abs() <= MOST_LOST * whole.max(kept);
-    (rest.len() > 3 && small && polygon::self_crossing(&rest).is_none()).then_some(rest)
 }
 
 /// From the coordinates of the file to leaf space.
@@ -425,27 +370,4 @@ fn place_name(p: DVec2) -> String {
         _ => format!("{v:.3}"),
     };
     format!("({}, {})", number(p.x), number(p.y))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_small_loop_is_cut_off_and_a_large_one_is_not() {
-        let circle = |n: usize| {
-            (0..n)
-                .map(move |i| DVec2::from_angle(std::f64::consts::TAU * i as f64 / n as f64) * 10.0)
-        };
-        let mut points: Vec<DVec2> = circle(60).collect();
-        points.swap(10, 11);
-        assert!(polygon::self_crossing(&points).is_some());
-        let mended = without_loops(&points).expect("a small loop");
-        assert_eq!(polygon::self_crossing(&mended), None);
-        let eight: Vec<DVec2> = (0..60)
-            .map(|i| std::f64::consts::TAU * (f64::from(i) + 0.3) / 60.0)
-            .map(|t| DVec2::new(t.sin(), (2.0 * t).sin()))
-            .collect();
-        assert_eq!(without_loops(&eight), None);
-    }
 }

@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::silhouette::{self, Picture};
 use super::{MarginError, placement};
+use crate::geometry::compact::{self, CompactCurve};
 use crate::geometry::polygon;
 use crate::raster::components::{Components, neighbours};
 use crate::raster::{Grid, contour, distance};
@@ -34,6 +35,15 @@ pub struct Blade {
     pub base_to_apex: Option<f64>,
     /// It runs over the border of the picture.
     pub is_cut: bool,
+}
+
+impl Blade {
+    /// The boundary as a compact curve that stays within `tolerance` (px) of it; tips of lobes and teeth
+    /// are kept as corners.
+    #[must_use]
+    pub fn silhouette(&self, tolerance: f64) -> CompactCurve {
+        compact::compact(&self.outline, &[], tolerance)
+    }
 }
 
 /// What was found in a picture.

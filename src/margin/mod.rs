@@ -10,7 +10,9 @@
 pub mod blades;
 pub mod curve;
 pub mod detail;
+mod error;
 pub mod fit;
+mod given;
 pub mod instances;
 mod landmarks;
 pub mod lobes;
@@ -21,6 +23,7 @@ pub mod placement;
 pub mod shapes;
 pub mod silhouette;
 pub mod sketch;
+pub mod tidy;
 
 use glam::DVec2;
 
@@ -29,6 +32,7 @@ use crate::geometry::{Rect, polygon};
 use crate::parameter::{parameters, words};
 use crate::seed::Seed;
 use detail::{RoughnessSpec, TeethSpec, WaveSpec};
+pub use error::MarginError;
 pub use landmarks::{Landmark, LandmarkKind};
 use lobes::LobeRecord;
 use lobes::shorthand::LobingSpec;
@@ -105,93 +109,6 @@ pub struct Margin {
     apex: usize,
     cuts: Vec<Vec<DVec2>>,
     landmarks: Vec<Landmark>,
-}
-
-/// Why a margin could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MarginError {
-    /// A coordinate is NaN or infinite.
-    #[error("the outline has a coordinate that is not a finite number, at point {index}")]
-    NotFinite {
-        /// Index of the point.
-        index: usize,
-    },
-    /// Too little left to be a leaf.
-    #[error("the outline has {count} distinct points; a leaf needs at least {least}")]
-    TooFewPoints {
-        /// Distinct points.
-        count: usize,
-        /// The least number.
-        least: usize,
-    },
-    /// The outline encloses (nearly) nothing.
-    #[error("the outline encloses no area ({area_mm2:.3e} mm²)")]
-    NoArea {
-        /// Its area (mm²).
-        area_mm2: f64,
-    },
-    /// The outline crosses or touches itself.
-    #[error("the outline crosses itself near ({x:.2}, {y:.2}) mm; {hint}")]
-    SelfCrossing {
-        /// Where, x (mm).
-        x: f64,
-        /// Where, y (mm).
-        y: f64,
-        /// What to change.
-        hint: &'static str,
-    },
-    /// The base is not the first vertex, or the apex not on the axis.
-    #[error("the outline must start at the base (0, 0) and have its apex on the +y axis")]
-    NotPlaced,
-    /// A cut leaves the blade.
-    #[error("a slit leaves the blade near ({x:.2}, {y:.2}) mm")]
-    CutOutside {
-        /// Where, x (mm).
-        x: f64,
-        /// Where, y (mm).
-        y: f64,
-    },
-    /// The landmarks of one side contradict each other.
-    #[error("{key} = {value} {problem}")]
-    Landmark {
-        /// The key.
-        key: String,
-        /// Its value.
-        value: f64,
-        /// What is wrong with it and what to change.
-        problem: String,
-    },
-    /// Settings that are each in order make no leaf together.
-    #[error("{0}")]
-    Unsuited(String),
-    /// A lobe crosses its neighbours.
-    #[error("the outline crosses itself near ({x:.2}, {y:.2}) mm: {key} = {value} {problem}")]
-    LobeCrossing {
-        /// Where, x (mm).
-        x: f64,
-        /// Where, y (mm).
-        y: f64,
-        /// The key to change.
-        key: String,
-        /// Its value.
-        value: f64,
-        /// Its bound.
-        problem: String,
-    },
-    /// A picture holds no usable outline.
-    #[error("{0}")]
-    Picture(String),
-    /// The place given for the petiole is unusable.
-    #[error("the root ({x}, {y}) {problem}")]
-    Root {
-        /// As given, x.
-        x: f64,
-        /// As given, y.
-        y: f64,
-        /// What is wrong with it.
-        problem: String,
-    },
 }
 
 impl Margin {
@@ -377,7 +294,8 @@ pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
         MarginKind::Unilobed => {
             let outline = parametric::outline(spec)?.peltate(spec.base_inset);
             let hint = "lower tension, or narrow tail_x or shoulder_x";
-            Margin::from_outline(outline.scaled(DVec2::splat(spec.length_mm)), hint)
+            let margin = Margin::from_outline(outline.scaled(DVec2::splat(spec.length_mm)), hint);
+            margin.map_err(|error| parametric::mending::advised(spec, error))
         }
         MarginKind::Lobed => {
             let expanded;
@@ -389,78 +307,11 @@ pub fn entire(spec: &MarginSpec) -> Result<Margin, MarginError> {
             };
             let outline = lobes::outline(records)?.peltate(spec.base_inset);
             let hint = "make the lobes there narrower or shorter";
-            let scale = DVec2::splat(spec.length_mm);
-            Margin::from_outline(outline.clone().scaled(scale), hint).map_err(|error| match error {
-                MarginError::SelfCrossing { x, y, .. } => {
-                    let at = DVec2::new(x, y) / spec.length_mm;
-                    lobes::mending::advice(spec, records, &outline, at).unwrap_or(error)
-                }
-                error => error,
-            })
+            let margin = Margin::from_outline(outline.scaled(DVec2::splat(spec.length_mm)), hint);
+            margin.map_err(|error| lobes::mending::advised(spec, records, error))
         }
         MarginKind::Polygon => {
-            let spec = spec.at_length();
-            let vector = |p: &[f64; 2]| DVec2::from(*p);
-            let outline: Vec<DVec2> = spec.polygon_mm.iter().map(vector).collect();
-            let cuts = spec.cuts_mm.iter().map(|line| line.iter().map(vector).collect()).collect();
-            let apex = apex_vertex(&outline);
-            let landmarks = spec.polygon_landmarks(&outline);
-            let outline = Outline { points: outline, apex, cuts, landmarks };
-            Margin::from_outline(outline, "mend margin.polygon_mm there")
+            Margin::from_outline(spec.given_outline(), "mend margin.polygon_mm there")
         }
     }
-}
-
-impl MarginSpec {
-    /// The same with its polygon in millimetres: scaled so that the apex stands at `length_mm`.
-    #[must_use]
-    pub fn at_length(&self) -> Self {
-        let mut spec = self.clone();
-        let given: Vec<DVec2> = self.polygon_mm.iter().map(|p| DVec2::from(*p)).collect();
-        let apex = apex_vertex(&given);
-        let scale = scale_to(given.get(apex).map_or(0.0, |tip| tip.y), self.length_mm);
-        if self.kind == MarginKind::Polygon && scale != 1.0 {
-            let lines = [&mut spec.cuts_mm, &mut spec.tooth_tips_mm, &mut spec.lobe_veins_mm];
-            let points = lines.into_iter().flatten().flatten();
-            for p in spec.polygon_mm.iter_mut().chain(points) {
-                *p = p.map(|x| x * scale);
-            }
-            spec.polygon_mm[apex][1] = self.length_mm;
-        }
-        spec
-    }
-}
-
-impl MarginSpec {
-    /// What the settings know of a polygon: each at the vertex nearest to it.
-    fn polygon_landmarks(&self, outline: &[DVec2]) -> Vec<Landmark> {
-        let nearest = |p: &[f64; 2]| {
-            let far = |i: &usize| outline[*i].distance_squared(DVec2::from(*p));
-            (0..outline.len()).min_by(|i, j| far(i).total_cmp(&far(j)))
-        };
-        let orders = self.tooth_tips_mm.iter().zip(1_u8..);
-        let teeth = orders
-            .flat_map(|(tips, order)| tips.iter().map(move |p| (p, LandmarkKind::Tooth { order })));
-        let lobes = self.lobe_veins_mm.iter().filter_map(|vein| match &vein[..] {
-            [origin, tip] => Some((tip, LandmarkKind::LobeTip { origin: DVec2::from(*origin) })),
-            _ => None,
-        });
-        let all = teeth.chain(lobes);
-        all.filter_map(|(p, kind)| Some(Landmark { vertex: nearest(p)?, kind })).collect()
-    }
-}
-
-/// What brings a polygon of one length to another; 1 for one that is not placed.
-fn scale_to(from_mm: f64, to_mm: f64) -> f64 {
-    let scale = to_mm / from_mm;
-    if from_mm > 0.0 && scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
-}
-
-/// The vertex on the +y axis that lies highest: where a placed polygon has its apex.
-fn apex_vertex(outline: &[DVec2]) -> usize {
-    let on_axis = |p: &DVec2| p.x.abs() <= 1e-9 * p.y.abs().max(1.0);
-    (0..outline.len())
-        .filter(|&i| on_axis(&outline[i]))
-        .max_by(|&i, &j| outline[i].y.total_cmp(&outline[j].y))
-        .unwrap_or(0)
 }

@@ -8,6 +8,10 @@
 //!
 //! Coordinates of the settings are relative to the primary vein (length 1), as in the thesis.
 
+pub(super) mod mending;
+#[cfg(test)]
+mod properties;
+
 use glam::DVec2;
 
 use super::curve::{self, Waypoint};

@@ -329,7 +329,15 @@ impl<'a> Blade<'a> {
             .map(|(i, _)| i)
             .collect();
         for i in fallen {
-            self.nodes[i][GONE] = self.nodes[i][GONE].max(FALLEN_MM);
+            let (x, y) = (i % side, i / side);
+            for row in y.saturating_sub(2)..(y + 3).min(side) {
+                for node in (x.saturating_sub(2)..(x + 3).min(side)).map(|x| row * side + x) {
+                    // Past the margin, too: what is read between the nodes would leave its rim.
+                    if node == i || self.place(node).edge <= 0.0 {
+                        self.nodes[node][GONE] = self.nodes[node][GONE].max(FALLEN_MM);
+                    }
+                }
+            }
         }
     }
 

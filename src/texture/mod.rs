@@ -8,6 +8,7 @@
 //! rest is small beside it: 2 bytes a texel while the leaf is spread over the empty ones.
 
 pub mod atlas;
+mod band;
 mod brush;
 pub mod damage;
 pub mod deep;

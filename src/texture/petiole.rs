@@ -57,10 +57,13 @@ pub(super) struct StalkAt {
     pub dome: f32,
 }
 
+/// A straight midrib wanders by up to so many degrees beside its base.
+const STRAIGHT_DEG: f64 = 10.0;
+
 impl Stalk {
     /// The stalk of a leaf whose midrib runs from the base along `midrib` and has `neck` as its
-    /// radius there (mm).
-    pub(super) fn new(spec: &PetioleSpec, neck: f64, midrib: &[DVec2]) -> Self {
+    /// radius there (mm). It `leads` where the petiole goes on from it, bent as it is.
+    pub(super) fn new(spec: &PetioleSpec, neck: f64, midrib: &[DVec2], leads: bool) -> Self {
         let length = spec.length_mm;
         if length <= 0.0 {
             return Self { points: vec![DVec2::ZERO], radii: vec![0.0], along: vec![0.0] };
@@ -70,7 +73,7 @@ impl Stalk {
         // A circular arc that leaves the blade along the midrib.
         let turn = Angle::from_degrees(spec.bend_deg / PIECES as f64);
         let step = length / PIECES as f64;
-        let mut direction = DVec2::NEG_Y;
+        let mut direction = if leads { Self::leaving(neck, midrib) } else { DVec2::NEG_Y };
         let mut point = DVec2::ZERO;
         for i in 0..=PIECES {
             let t = i as f32 / PIECES as f32;
@@ -85,6 +88,15 @@ impl Stalk {
             point += direction * step;
         }
         Self { points, radii, along }
+    }
+
+    /// The direction in which it leaves the blade: down, or against a midrib that is bent at its base.
+    fn leaving(neck: f64, midrib: &[DVec2]) -> DVec2 {
+        let reach = ROOT_RADII * neck;
+        let Some(ahead) = midrib.iter().find(|p| p.length() >= reach) else { return DVec2::NEG_Y };
+        let off = DVec2::Y.angle_to(*ahead).to_degrees();
+        let bend = Angle::from_degrees(off - off.clamp(-STRAIGHT_DEG, STRAIGHT_DEG));
+        DVec2::new(bend.cos(), bend.sin()).rotate(DVec2::NEG_Y)
     }
 
     /// The part along the midrib, from its thin end down to the base, which is not in it.
@@ -179,7 +191,8 @@ mod tests {
     #[test]
     fn the_bend_is_the_angle_between_the_ends() {
         let spec = PetioleSpec { bend_deg: 80.0, ..PetioleSpec::default() };
-        let stalk = Stalk::new(&spec, 0.4, &[DVec2::ZERO, DVec2::new(0.1, 1.0), DVec2::Y * 9.0]);
+        let midrib = [DVec2::ZERO, DVec2::new(0.1, 1.0), DVec2::Y * 9.0];
+        let stalk = Stalk::new(&spec, 0.4, &midrib, true);
         assert_eq!(stalk.along[..2], [-DVec2::new(0.1, 1.0).length(), 0.0]);
         let last = stalk.points[PIECES + 1] - stalk.points[PIECES];
         assert!((last.angle_to(DVec2::NEG_Y).abs().to_degrees() - 80.0).abs() < 1e-6);
@@ -190,7 +203,22 @@ mod tests {
     #[test]
     fn a_sessile_leaf_has_none() {
         let spec = PetioleSpec { length_mm: 0.0, ..PetioleSpec::default() };
-        let stalk = Stalk::new(&spec, 0.4, &[]);
+        let stalk = Stalk::new(&spec, 0.4, &[], true);
         assert_eq!((stalk.end(), stalk.widest()), (DVec2::ZERO, 0.0));
+    }
+
+    #[test]
+    fn a_midrib_bent_at_its_base_takes_the_petiole_along() {
+        let spec = PetioleSpec { length_mm: 20.0, bend_deg: 0.0, ..PetioleSpec::default() };
+        let end = |off_deg: f64, leads: bool| {
+            let (sine, cosine) = off_deg.to_radians().sin_cos();
+            let midrib = [DVec2::ZERO, DVec2::new(sine, cosine) * 30.0];
+            Stalk::new(&spec, 0.4, &midrib, leads).end()
+        };
+        assert!(end(9.0, true).distance(DVec2::NEG_Y * 20.0) < 1e-9, "a straight one wanders");
+        assert!(end(40.0, false).distance(DVec2::NEG_Y * 20.0) < 1e-9, "one of several");
+        // 40° to the right above the base, 30° to the left below it.
+        let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
+        assert!(end(40.0, true).distance(DVec2::new(-sine, -cosine) * 20.0) < 1e-9);
     }
 }

@@ -316,6 +316,17 @@ fn golden_shapes_by_name() {
 }
 
 #[test]
+fn golden_multilobed_figures() {
+    // Garg 2011, figures 4.6 and 6.12.
+    let panel = |preset: &presets::Preset| {
+        let leaf = leaf(&document(preset.name, &[]), 1, 240);
+        panel(leaf.textures.front.base_colour, &format!("{} {}", preset.common, preset.about))
+    };
+    let panels: Vec<Panel> = presets::FIGURES.iter().map(panel).collect();
+    compare("readme_lobes", &sheet("figures 4.6 and 6.12 of Garg 2011", &panels, 6, 240));
+}
+
+#[test]
 fn every_picture_of_the_readme_is_here() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let readme = std::fs::read_to_string(root.join("README.md")).expect("the README");

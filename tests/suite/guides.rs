@@ -1,9 +1,9 @@
 //! Guided veins in whole leaves: every preset, several seeds.
 
 use venation::growth::{GrowingBlade, GrowthType};
-use venation::margin;
+use venation::margin::{self, LandmarkKind};
 use venation::observer::Silent;
-use venation::presets::PRESETS;
+use venation::presets::{self, PRESETS};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::veins::guides::SecondaryType;
@@ -94,6 +94,36 @@ fn in_every_preset_the_midrib_is_straight_and_the_widest_vein() {
             // Of many pairs, as a chestnut has them, an eighth.
             let most = 3.max((right + left) / 8);
             assert!(right >= 4 && (right - left).abs() <= most, "{} {right} {left}", preset.name);
+        }
+    }
+}
+
+#[test]
+fn every_lobe_of_a_lobed_preset_has_a_vein_to_its_tip() {
+    for (name, expected) in [
+        ("maple", VeinKind::Primary),
+        ("ivy", VeinKind::Primary),
+        ("oak", VeinKind::Secondary),
+        ("tulip-tree", VeinKind::Secondary),
+    ] {
+        for seed in 0..4 {
+            let document = presets::find(name).expect(name).document().expect("it parses");
+            let mut spec = document.resolve(Seed(seed)).expect("it resolves");
+            spec.veins.spawn_rate = 0.0;
+            let (blade, venation) = grown(&spec, seed);
+            let margin = blade.finished();
+            let nodes = venation.graph().positions().iter().zip(0..);
+            let nodes: Vec<_> = nodes.map(|(at, node)| (*at, venation.kind(node))).collect();
+            for mark in margin.landmarks() {
+                let LandmarkKind::LobeTip { origin } = mark.kind else { continue };
+                let tip = margin.outline()[mark.vertex];
+                let kind =
+                    if mark.vertex == margin.apex_index() { VeinKind::Primary } else { expected };
+                let near = nodes
+                    .iter()
+                    .any(|(at, own)| *own == kind && at.distance(tip) < 0.02 * margin.length_mm());
+                assert!(near, "{name} seed {seed}: no {kind:?} vein at {tip} from {origin}");
+            }
         }
     }
 }

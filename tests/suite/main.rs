@@ -5,6 +5,7 @@ mod cli; // the command line as a person types it: messages, exit codes, files
 mod closed; // closed venation: loops that close, against the same reference
 mod emergence; // straight, symmetric, ordered veins from growth alone
 mod files; // what is written, read back by independent readers
+mod fitting; // real leaves to parameters and silhouettes
 mod golden; // expected pictures, which are also the README's
 mod guides; // veins laid by architecture, in every preset
 mod imports; // outlines from files, odd and broken ones too

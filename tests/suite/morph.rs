@@ -241,3 +241,40 @@ fn golden_morphs_of_figures_7_5_to_7_11() {
     }
     compare("readme_morph", &sheet("", &panels, N, 120));
 }
+
+/// Every preset's margin, with the seed it is drawn from.
+fn preset_margins() -> Vec<(&'static str, MarginSpec)> {
+    let margin = |name| document(name, &[]).resolve(Seed(1)).expect("it resolves").margin;
+    venation::presets::PRESETS.iter().map(|preset| (preset.name, margin(preset.name))).collect()
+}
+
+/// Morphs every preset into those that stand so many places after it in the list.
+fn presets_turn_into_each_other(distances: &[usize], frames: u32) {
+    let all = preset_margins();
+    for (i, (from, first)) in all.iter().enumerate() {
+        for distance in distances {
+            let (to, last) = &all[(i + distance) % all.len()];
+            let station = |margin: &MarginSpec| Station { margin: margin.clone(), weight: 1.0 };
+            let path = MorphPath::new(&[station(first), station(last)], Seed(1)).expect("a path");
+            for frame in 0..=frames {
+                let u = f64::from(frame) / f64::from(frames);
+                let margin = path.at(u);
+                let margin =
+                    margin.unwrap_or_else(|error| panic!("{from} to {to} at {u}: {error}"));
+                assert_eq!(margin.check(), None, "{from} to {to} at {u}");
+            }
+        }
+    }
+}
+
+#[test]
+fn presets_of_every_kind_turn_into_each_other() {
+    presets_turn_into_each_other(&[1, 7], 3);
+}
+
+#[test]
+#[ignore = "takes minutes: run with --ignored"]
+fn every_preset_turns_into_every_other() {
+    let count = venation::presets::PRESETS.len();
+    presets_turn_into_each_other(&(1..count).collect::<Vec<_>>(), 23);
+}

@@ -2,7 +2,7 @@
 
 use venation::error::Error;
 use venation::growth::{GrowthType, RatePattern};
-use venation::margin::{self, shapes};
+use venation::margin::{self, MarginSpec, shapes};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::veins::Algorithm;
@@ -217,7 +217,10 @@ impl Case {
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
             Self::Seed => {}
             Self::Shape(index) => {
-                spec.margin = spec.margin.shaped(&shapes::all()[index]);
+                // The shape alone, as `--shape` gives it: no teeth, waves or bend of the leaf's own.
+                let length_mm = spec.margin.length_mm;
+                let plain = MarginSpec { length_mm, ..MarginSpec::default() };
+                spec.margin = plain.shaped(&shapes::all()[index]);
                 spec.texture.size_px = spec.texture.size_px.min(SHAPE_PX);
             }
             Self::Emergence(emergence) => emergence.apply(spec)?,

@@ -14,6 +14,8 @@
 //! margin without detail, in steps, until nothing touches.
 
 mod cut;
+mod node;
+mod ornament;
 mod place;
 mod ripple;
 mod run;
@@ -27,7 +29,8 @@ use super::lobes::{LobeRecord, LobeSide};
 use super::{Landmark, MarginError, MarginSpec, Outline, curve};
 use crate::geometry::polygon;
 use crate::seed::{Seed, Stage};
-use cut::{Cutter, Node};
+use cut::Cutter;
+use node::Node;
 use place::{Draws, Edge};
 pub use place::{Tooth, ToothForm};
 use run::{Run, Span};
@@ -122,10 +125,7 @@ pub fn carve(
 
 /// The records of the lobes of a leaf, in the order of their tips on the outline.
 fn lobes_in_order(spec: &MarginSpec) -> Vec<&LobeRecord> {
-    let on = |side: LobeSide| {
-        let there = move |lobe: &&LobeRecord| lobe.side == side || lobe.side == LobeSide::Both;
-        spec.lobe.iter().filter(there)
-    };
+    let on = |side: LobeSide| spec.lobe.iter().filter(move |lobe| lobe.side.is_on(side));
     let apex = spec.lobe.iter().filter(|lobe| lobe.side == LobeSide::Apex);
     on(LobeSide::Right).chain(apex).chain(on(LobeSide::Left).rev()).collect()
 }

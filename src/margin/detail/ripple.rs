@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::cut::Node;
+use super::node::Node;
 use super::run::Run;
 use super::spec::{RoughnessSpec, WaveSpec};
 use crate::geometry::noise;

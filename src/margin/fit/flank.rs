@@ -37,6 +37,14 @@ pub(super) struct Flank {
     pub(super) worst: f64,
 }
 
+impl Flank {
+    /// The same with halves nearer to the lines from their feet to their tips.
+    pub(super) fn softened(&self, share: f64) -> Self {
+        let halves = self.halves.iter().map(|half| half.softened(share)).collect();
+        Self { halves, ..self.clone() }
+    }
+}
+
 impl Side {
     /// Of a line from base to apex.
     pub(super) fn of(line: &[DVec2]) -> Self {

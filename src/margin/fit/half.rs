@@ -68,6 +68,16 @@ impl Half {
         list
     }
 
+    /// The same with only a share of its bulge and of its angles.
+    pub(super) fn softened(&self, share: f64) -> Self {
+        Self {
+            waist: DVec2::new(self.waist.x * share, self.waist.y),
+            foot_angle: self.foot_angle * share,
+            tip_angle: self.tip_angle * share,
+            ..self.clone()
+        }
+    }
+
     /// How many numbers were fitted: tension counts where it is not that of the thesis.
     pub(super) fn count(&self) -> usize {
         self.numbers().len() - usize::from(self.tension == 1.0)

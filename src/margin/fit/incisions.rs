@@ -4,16 +4,16 @@ use glam::DVec2;
 
 /// A place where the margin comes nearer to the inside than its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Incision {
+pub(in crate::margin) struct Incision {
     /// Index of the deepest point.
-    pub(super) at: usize,
+    pub(in crate::margin) at: usize,
     /// How far inside the line over the pocket it lies.
-    pub(super) depth: f64,
+    pub(in crate::margin) depth: f64,
 }
 
 /// The incisions of a line from base to apex whose outside is on the right hand, the deepest first;
 /// those shallower than `least` are left away.
-pub(super) fn incisions(line: &[DVec2], least: f64) -> Vec<Incision> {
+pub(in crate::margin) fn incisions(line: &[DVec2], least: f64) -> Vec<Incision> {
     let mut found = Vec::new();
     let mut open = vec![(0, line.len() - 1)];
     while let Some((first, last)) = open.pop() {

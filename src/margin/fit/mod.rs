@@ -16,8 +16,8 @@
 
 mod flank;
 mod half;
-mod incisions;
-mod records;
+pub(super) mod incisions;
+pub(super) mod records;
 
 use glam::DVec2;
 
@@ -107,6 +107,8 @@ const WORTH_AN_EXTENSION: f64 = 0.003;
 /// of the root of the blade's area.
 const DEEP: f64 = 0.1;
 const SHALLOW: f64 = 0.012;
+/// What is left of the bulge of halves that make lobes cross, step by step.
+const SOFTENED: [f64; 3] = [0.85, 0.65, 0.4];
 /// Lobes that a side may get beyond those that deep incisions part.
 const MORE_LOBES: usize = 3;
 
@@ -134,6 +136,37 @@ struct Sides {
 enum Shape {
     Unilobed([Half; 2]),
     Lobed([Flank; 2], AtApex),
+}
+
+impl Shape {
+    /// The settings of a blade of that length, its lobes and the numbers fitted.
+    fn settings(&self, length_mm: f64) -> (MarginSpec, usize, usize) {
+        match self {
+            Self::Unilobed([right, left]) => {
+                let spec = MarginSpec {
+                    kind: MarginKind::Unilobed,
+                    length_mm,
+                    right: records::side(right),
+                    left: records::side(left),
+                    ..MarginSpec::default()
+                };
+                (spec, 1, right.count() + left.count())
+            }
+            Self::Lobed([right, left], at_apex) => {
+                let lobe = records::records(right, left, *at_apex);
+                let lobes = lobe.len();
+                let tips_and_valleys = right.corners.len() + left.corners.len() - 4;
+                let halves = right.halves.len() + left.halves.len();
+                let spec = MarginSpec {
+                    kind: MarginKind::Lobed,
+                    length_mm,
+                    lobe,
+                    ..MarginSpec::default()
+                };
+                (spec, lobes, 2 * tips_and_valleys + 4 * halves)
+            }
+        }
+    }
 }
 
 impl Sides {
@@ -267,37 +300,22 @@ impl<'a> Tried<'a> {
         }
     }
 
-    /// Builds the leaf and keeps it when it is the best so far.
+    /// Builds the leaf and keeps it when it is the best so far. Lobes that cross are drawn towards the
+    /// lines from foot to tip until they do not.
     fn add(&mut self, shape: &Shape) {
-        let length_mm = self.real.length_mm();
-        let (spec, lobes, numbers) = match shape {
-            Shape::Unilobed([right, left]) => {
-                let spec = MarginSpec {
-                    kind: MarginKind::Unilobed,
-                    length_mm,
-                    right: records::side(right),
-                    left: records::side(left),
-                    ..MarginSpec::default()
-                };
-                (spec, 1, right.count() + left.count())
+        let mut result = self.measured(shape);
+        if let Shape::Lobed(flanks, at_apex) = shape {
+            for share in SOFTENED {
+                if result.is_ok() {
+                    break;
+                }
+                let flanks = flanks.each_ref().map(|flank| flank.softened(share));
+                result = self.measured(&Shape::Lobed(flanks, *at_apex));
             }
-            Shape::Lobed([right, left], at_apex) => {
-                let lobe = records::records(right, left, *at_apex);
-                let lobes = lobe.len();
-                let tips_and_valleys = right.corners.len() + left.corners.len() - 4;
-                let halves = right.halves.len() + left.halves.len();
-                let spec = MarginSpec {
-                    kind: MarginKind::Lobed,
-                    length_mm,
-                    lobe,
-                    ..MarginSpec::default()
-                };
-                (spec, lobes, 2 * tips_and_valleys + 4 * halves)
-            }
-        };
-        match self.measured(spec, lobes, numbers) {
+        }
+        match result {
             Ok(fit) => {
-                let cost = fit.worst() + WORTH_A_LOBE * lobes as f64;
+                let cost = fit.worst() + WORTH_A_LOBE * fit.lobes as f64;
                 if self.best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     self.best = Some((cost, fit));
                 }
@@ -306,7 +324,8 @@ impl<'a> Tried<'a> {
         }
     }
 
-    fn measured(&self, spec: MarginSpec, lobes: usize, numbers: usize) -> Result<Fit, MarginError> {
+    fn measured(&self, shape: &Shape) -> Result<Fit, MarginError> {
+        let (spec, lobes, numbers) = shape.settings(self.real.length_mm());
         let margin = super::build(&spec, Seed(0))?;
         let length = margin.length_mm();
         let fitted = dense(&margin);

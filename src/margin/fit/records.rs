@@ -131,7 +131,7 @@ fn lateral(flank: &Flank, at_apex: AtApex, side: LobeSide) -> Vec<LobeRecord> {
 
 /// Where on the midrib the vein of a lobe begins: where the axis of the lobe meets it; the base for a
 /// lobe that comes from near it.
-fn origin(below: DVec2, tip: DVec2, above: DVec2) -> DVec2 {
+pub(in crate::margin) fn origin(below: DVec2, tip: DVec2, above: DVec2) -> DVec2 {
     let axis = tip - (below + above) * 0.5;
     let meets = tip.y - axis.y / axis.x * tip.x;
     let far = axis.x > 0.0 && meets > AT_BASE && meets < tip.y.min(0.98);

@@ -1,22 +1,38 @@
-//! Where two neighbouring lobes meet (section 6.3, default valleys).
+//! Where two neighbouring lobes meet (section 6.3): default valleys, and set ones that lobes cover.
 
 use glam::DVec2;
 
 use super::place::{Half, Lobe};
-use super::{Landmark, LandmarkKind, Outline, curve};
+use super::{Landmark, LandmarkKind, Outline, STRIP, Waypoint, curve};
 use crate::geometry::Rect;
 
 /// Segments that are tested together: few enough to miss early, enough to skip many.
 const RUN: usize = 8;
 
-/// Adds the upper half of `lobe` from its tip down to where it meets `next`, and from there the half
-/// of `next` up to its tip; the valley is a landmark. Adds nothing and says `false` when they do not
-/// meet.
-pub(super) fn join(outline: &mut Outline, lobe: &Lobe, next: &Lobe, half: Half) -> bool {
+/// Adds the upper half of `lobe` from its tip down to the valley, and from there the half of `next` up
+/// to its tip; the valley is a landmark. `starts` is how the two halves leave their lower ends.
+///
+/// The valley lies where the halves meet, seen from the tips. Halves that do not meet but begin in one
+/// place have it there; for others nothing is added, and the answer is `false`.
+pub(super) fn join(
+    outline: &mut Outline,
+    (lobe, next, half): (&Lobe, &Lobe, Half),
+    starts: (Waypoint, Waypoint),
+) -> bool {
     // From the tip down, and from the tip of the next down.
-    let down = curve_from_tip(lobe, lobe.upper);
-    let up = curve_from_tip(next, half);
-    let Some((i, j, valley)) = first_crossing(&down, &up) else { return false };
+    let down = curve_from_tip(lobe, lobe.upper, starts.0);
+    let up = curve_from_tip(next, half, starts.1);
+    // Lobes out of one place always touch there; those that meet hardly farther out leave a strip.
+    let shared = starts.0.at == starts.1.at;
+    let least = match starts.0.at == lobe.origin {
+        true => STRIP * lobe.length.min(next.length),
+        false => 0.0,
+    };
+    let met =
+        first_crossing(&down, &up).filter(|(_, _, at)| !shared || at.distance(starts.0.at) > least);
+    let ends = (down.len() - 2, up.len() - 2, starts.0.at);
+    let one_place = shared && starts.0.at != lobe.origin;
+    let Some((i, j, valley)) = met.or(one_place.then_some(ends)) else { return false };
     outline.points.extend(&down[1..=i]);
     outline.points.push(valley);
     let vertex = outline.points.len() - 1;
@@ -25,9 +41,9 @@ pub(super) fn join(outline: &mut Outline, lobe: &Lobe, next: &Lobe, half: Half) 
     true
 }
 
-fn curve_from_tip(lobe: &Lobe, half: Half) -> Vec<DVec2> {
+fn curve_from_tip(lobe: &Lobe, half: Half, start: Waypoint) -> Vec<DVec2> {
     let mut waypoints = Vec::with_capacity(3);
-    lobe.waypoints(&mut waypoints, half, lobe.leaving(half, lobe.origin));
+    lobe.waypoints(&mut waypoints, half, start);
     let mut points = Vec::with_capacity(96);
     points.push(lobe.tip());
     curve::append_reversed(&mut points, &waypoints, lobe.tension);

@@ -15,9 +15,20 @@ const SHARES: [f64; 9] = [0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1];
 /// So many lobes around a crossing are looked at.
 const TRIED: usize = 4;
 
-/// For an outline that crosses itself near `at` (relative): the waist of the lobe there, and the widest
-/// it may be with everything else as it is; `None` when no width of that lobe helps.
-pub(in crate::margin) fn advice(
+/// For lobes that cross: the waist of the lobe there, and the widest it may be with everything else as it
+/// is; the error as it was when no width of that lobe helps.
+pub(in crate::margin) fn advised(
+    spec: &MarginSpec,
+    records: &[LobeRecord],
+    error: MarginError,
+) -> MarginError {
+    let MarginError::SelfCrossing { x, y, .. } = error else { return error };
+    let at = DVec2::new(x, y) / spec.length_mm;
+    let crossing = outline(records).map(|outline| outline.peltate(spec.base_inset));
+    crossing.ok().and_then(|crossing| advice(spec, records, &crossing, at)).unwrap_or(error)
+}
+
+fn advice(
     spec: &MarginSpec,
     records: &[LobeRecord],
     crossing: &Outline,
@@ -81,7 +92,7 @@ fn bound(
     let group = if listed { format!("margin.lobe.{}", index + 1) } else { "margin.lobing".into() };
     // Rounded down, so that the bound itself works.
     let most = (value * low * 1e3).floor() / 1e3;
-    Some(MarginError::LobeCrossing {
+    Some(MarginError::CrossingBy {
         x: at.x * spec.length_mm,
         y: at.y * spec.length_mm,
         key: format!("{group}.{half}.waist_x"),
@@ -100,7 +111,7 @@ fn record_of(records: &[LobeRecord], tip: DVec2, inset: f64) -> Option<usize> {
         let on = match record.side {
             LobeSide::Right => at.x >= 0.0,
             LobeSide::Left => at.x <= 0.0,
-            LobeSide::Both | LobeSide::Apex => true,
+            LobeSide::Both | LobeSide::Each | LobeSide::Apex => true,
         };
         if on { super::Lobe::new(record).tip().distance(folded) } else { f64::INFINITY }
     };

@@ -14,6 +14,8 @@
 //! - The margin starts at the base (0, 0) also when the first lobe's vein leaves higher up.
 //! - Neighbours that do not meet are joined by a strip of blade along the midrib, where the thesis
 //!   has them touch on it: see [`STRIP`].
+//! - A set valley that the lobes beside it cover lies where they meet: what is inside of both is no
+//!   margin, as in section 6.3 for default valleys.
 //! - Basal lobes that would overlap are cut back to a slit along the axis, (see [`SLIT`]).
 //!
 //! Coordinates are relative to the primary vein (length 1), those inside a lobe to the lobe's vein.
@@ -35,6 +37,9 @@ words! {
     pub enum LobeSide {
         /// One on the right and its mirror image on the left.
         Both = "both",
+        /// One on either side, with numbers of their own where a file gives ranges: the left one as far
+        /// its own as `margin.asymmetry` says.
+        Each = "each",
         /// Right of the midrib, seen from the front.
         Right = "right",
         /// Left of the midrib.
@@ -64,6 +69,14 @@ words! {
     }
 }
 
+impl LobeSide {
+    /// Whether a lobe that stands here has one on `side`, right or left.
+    #[must_use]
+    pub fn is_on(self, side: Self) -> bool {
+        self == side || matches!(self, Self::Both | Self::Each)
+    }
+}
+
 parameters! {
     /// One half of a lobe, on one side of its vein.
     pub struct HalfLobe {
@@ -82,7 +95,8 @@ parameters! {
     /// One lobe, and the valley between it and the next one towards the apex. Lobes of a side are
     /// listed from base to apex.
     pub struct LobeRecord {
-        /// Where it stands: right, left, both (with its mirror image) or at the apex.
+        /// Where it stands: right, left, on both sides (mirror images), on each (alike as far as ranges
+        /// and `margin.asymmetry` leave them so) or at the apex.
         side: choice(LobeSide, LobeSide::Both),
         /// Where on the midrib its vein begins.
         origin: number(0.0, 0.0..=0.98, "lengths"),
@@ -121,7 +135,8 @@ parameters! {
     }
 }
 
-/// Neighbours that do not meet leave this share of the shorter lobe between them and the midrib.
+/// Neighbours that do not meet, or nearer to the midrib than this, leave this share of the shorter lobe
+/// between them and it.
 pub const STRIP: f64 = 0.08;
 
 /// The margin through the tangent at a valley made by [`STRIP`] (degrees).
@@ -147,8 +162,7 @@ pub fn outline(records: &[LobeRecord]) -> Result<Outline, MarginError> {
         return wrong("margin.lobe has more than one record with side = \"apex\"; keep one");
     }
     let on = |side: LobeSide| -> Vec<Lobe> {
-        let there = |record: &&LobeRecord| record.side == side || record.side == LobeSide::Both;
-        records.iter().filter(there).map(Lobe::new).collect()
+        records.iter().filter(|record| record.side.is_on(side)).map(Lobe::new).collect()
     };
     let (right, left) = (on(LobeSide::Right), on(LobeSide::Left));
     if apex.is_none() && (right.is_empty() || left.is_empty()) {
@@ -221,17 +235,11 @@ fn flank(outline: &mut Outline, lobes: &[Lobe], apex: Option<(&Lobe, Half)>) {
             curve::append_reversed(&mut outline.points, &upward, lobe.tension);
             return;
         };
-        let met = lobe.valley.is_none() && meeting::join(outline, lobe, next, half);
+        let pair = (lobe, next, half);
+        let own = (lobe.leaving(lobe.upper, lobe.origin), next.leaving(half, next.origin));
+        let met = lobe.valley.is_none() && meeting::join(outline, pair, own);
         if !met {
-            let (down, up) = lobe.valley.unwrap_or_else(|| lobe.strip(next));
-            upward.clear();
-            lobe.waypoints(&mut upward, lobe.upper, down);
-            curve::append_reversed(&mut outline.points, &upward, lobe.tension);
-            let vertex = outline.points.len() - 1;
-            outline.landmarks.push(Landmark { vertex, kind: LandmarkKind::Valley });
-            upward.clear();
-            next.waypoints(&mut upward, half, up);
-            curve::append(&mut outline.points, &upward, next.tension);
+            meeting::join(outline, pair, lobe.valley.unwrap_or_else(|| lobe.strip(next)));
         }
     }
     if let (Some(start), Some((lobe, half))) = (start, apex) {

@@ -30,7 +30,7 @@ pub(super) struct Lobe {
     /// Waists are measured from the start of the half to the tip, not along the vein.
     by_chord: bool,
     direction: DVec2,
-    length: f64,
+    pub(super) length: f64,
     /// Half of what the vein turns (radians).
     bend: f64,
     notch: DVec2,

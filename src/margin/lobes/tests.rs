@@ -1,5 +1,6 @@
 use super::shorthand::{LobeRow, LobingSpec};
 use super::*;
+use crate::geometry::deviation;
 use crate::margin::{Margin, MarginKind, MarginSpec, entire};
 use crate::seed::{Rng, Seed, Stage};
 
@@ -136,13 +137,38 @@ fn a_set_valley_lies_where_equation_6_10_puts_it_with_its_tangents() {
         let outline = margin.outline();
         assert!(outline[vertex].distance(h) < 1e-9, "{i}");
         // The margin comes down on this lobe's side and goes up on the next one's.
-        let down = (outline[vertex - 1] - outline[vertex]).normalize();
-        let up = (outline[vertex + 1] - outline[vertex]).normalize();
+        let down = direction([0, 1, 2].map(|k| outline[vertex - k]));
+        let up = direction([0, 1, 2].map(|k| outline[vertex + k]));
         let way = way.normalize();
         let lower = DVec2::from_angle(-70.0_f64.to_radians()).rotate(way);
         let upper = DVec2::from_angle(30.0_f64.to_radians()).rotate(way);
-        assert!(down.dot(lower) > 0.998, "{i}: {down} {lower}");
-        assert!(up.dot(upper) > 0.998, "{i}: {up} {upper}");
+        assert!(down.distance(lower) < 1e-6, "{i}: {down} {lower}");
+        assert!(up.distance(upper) < 1e-6, "{i}: {up} {upper}");
+    }
+}
+
+#[test]
+fn a_set_valley_that_lobes_cover_lies_on_both_of_them_where_they_meet() {
+    let wide = HalfLobe { waist_x: 0.26, waist_y: 0.6, ..HalfLobe::default() };
+    let mut deep = palmate(5);
+    (deep.lower, deep.upper, deep.valley) = (wide.clone(), wide, ValleyKind::Set);
+    (deep.valley_distance, deep.valley_lower_deg, deep.valley_upper_deg) = (0.3, 20.0, 20.0);
+    let records = deep.records().unwrap();
+    let margin = entire(&lobed(deep)).unwrap();
+    assert_eq!(margin.check(), None);
+    for (i, found) in valleys(&margin)[..2].iter().enumerate() {
+        let (lobe, next) = (Lobe::new(&records[i]), Lobe::new(&records[i + 1]));
+        let (down, up) = lobe.valley.unwrap();
+        let set = down.at;
+        assert!(found.distance(set * 80.0) > 4.0, "{found} is farther out than {set}");
+        for (lobe, half, start) in [(&lobe, lobe.upper, down), (&next, next.lower, up)] {
+            let mut waypoints = Vec::new();
+            lobe.waypoints(&mut waypoints, half, start);
+            let spline = curve::spline(&waypoints, lobe.tension);
+            let near = (0..=20_000).map(|i| spline.at(f64::from(i) / 20_000.0));
+            let off = near.map(|p| p.distance(*found / 80.0)).fold(f64::INFINITY, f64::min);
+            assert!(off < 1e-4, "{i}: {off}");
+        }
     }
 }
 
@@ -239,15 +265,61 @@ fn drawn(rng: &mut Rng, side: LobeSide, n: usize, i: usize) -> LobeRecord {
     }
 }
 
-#[test]
-fn random_lobes_are_margins_or_are_refused_with_a_place() {
+/// Leaves of lobes drawn within reason.
+fn drawn_leaves(count: usize) -> Vec<Vec<LobeRecord>> {
     let mut rng = Seed(5).stream(Stage::Guides);
-    let mut made = 0;
-    for _ in 0..300 {
+    let mut leaf = || {
         let n = 1 + (rng.unit() * 3.0) as usize;
         let mut lobe: Vec<LobeRecord> =
             (0..n).map(|i| drawn(&mut rng, LobeSide::Both, n, i)).collect();
         lobe.push(drawn(&mut rng, LobeSide::Apex, n, n));
+        lobe
+    };
+    (0..count).map(|_| leaf()).collect()
+}
+
+#[test]
+fn a_small_change_of_random_lobes_moves_the_margin_a_little() {
+    // A switch of section 6.3 (a waist passed by its valley, lobes that come to touch) lies within a
+    // change this small in no leaf of a few hundred.
+    const BY: f64 = 1e-7;
+    let mut rng = Seed(6).stream(Stage::Guides);
+    let mut compared = 0;
+    for lobe in drawn_leaves(120) {
+        let mut moved = lobe.clone();
+        for record in &mut moved {
+            let halves = [&mut record.lower, &mut record.upper].into_iter().flat_map(|half| {
+                [
+                    &mut half.waist_x,
+                    &mut half.waist_y,
+                    &mut half.base_angle_deg,
+                    &mut half.apex_angle_deg,
+                ]
+            });
+            let rest = [
+                &mut record.angle_deg,
+                &mut record.length,
+                &mut record.valley_distance,
+                &mut record.valley_angle_deg,
+            ];
+            halves.chain(rest).for_each(|x| *x *= 1.0 + BY * rng.between(-1.0, 1.0));
+        }
+        let build = |lobe| entire(&MarginSpec { lobe, ..lobed(LobingSpec::default()) });
+        let (Ok(before), Ok(after)) = (build(lobe), build(moved)) else { continue };
+        compared += 1;
+        for (from, to) in [(&before, &after), (&after, &before)] {
+            let off = deviation::to_polygon(from.outline(), to.outline());
+            let most = off.into_iter().fold(0.0, f64::max);
+            assert!(most < 1e-2, "{most} mm of {}", before.length_mm());
+        }
+    }
+    assert!(compared > 100, "{compared}");
+}
+
+#[test]
+fn random_lobes_are_margins_or_are_refused_with_a_place() {
+    let mut made = 0;
+    for lobe in drawn_leaves(300) {
         let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
         match entire(&spec) {
             Ok(margin) => {
@@ -257,7 +329,8 @@ fn random_lobes_are_margins_or_are_refused_with_a_place() {
             Err(error) => assert!(error.to_string().contains("crosses itself"), "{error}"),
         }
     }
-    assert!(made > 150, "{made}");
+    // The rest has a lobe behind another, or one that reaches over the midrib.
+    assert!(made >= 280, "{made}");
 }
 
 #[test]
@@ -276,25 +349,30 @@ fn basal_lobes_that_overlap_are_cut_back_to_a_slit() {
 }
 
 #[test]
-fn lobes_that_cross_name_the_key_the_value_and_a_bound_that_works() {
-    let slim = HalfLobe { waist_x: 0.14, ..HalfLobe::default() };
-    let lobing = LobingSpec {
-        lower: slim.clone(),
-        upper: slim,
-        valley: ValleyKind::Set,
-        valley_distance: 0.4,
-        valley_angle_deg: 20.0,
-        ..pinnate(9)
+fn a_lobe_that_hides_another_names_the_key_the_value_and_a_bound_that_works() {
+    let half = |waist_x: f64| HalfLobe { waist_x, ..HalfLobe::default() };
+    let hidden = LobeRecord {
+        angle_deg: 100.0,
+        length: 0.6,
+        lower: half(0.14),
+        upper: half(0.14),
+        ..LobeRecord::default()
     };
-    let mut lobe = lobing.records().unwrap();
-    lobe[1].lower.waist_x = 1.1;
-    let spec = MarginSpec { lobe, ..lobed(LobingSpec::default()) };
+    let wide =
+        LobeRecord { angle_deg: 60.0, length: 0.9, lower: half(0.6), ..LobeRecord::default() };
+    let apex = LobeRecord { side: LobeSide::Apex, ..LobeRecord::default() };
+    let spec = MarginSpec { lobe: vec![hidden, wide, apex], ..lobed(LobingSpec::default()) };
     let error = entire(&spec).unwrap_err();
-    let MarginError::LobeCrossing { key, value, problem, .. } = &error else { panic!("{error}") };
-    assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 1.1));
+    let MarginError::CrossingBy { key, value, problem, .. } = &error else { panic!("{error}") };
+    assert_eq!((key.as_str(), *value), ("margin.lobe.2.lower.waist_x", 0.6));
     let words = problem.split("take ").nth(1).unwrap();
     let bound: f64 = words.split(' ').next().unwrap().parse().unwrap();
     let mut mended = spec;
     mended.lobe[1].lower.waist_x = bound;
     assert_eq!(entire(&mended).unwrap().check(), None);
+}
+
+/// The direction of a sampled parabola at the first of three neighbouring points, exactly.
+fn direction([a, b, c]: [DVec2; 3]) -> DVec2 {
+    (4.0 * b - 3.0 * a - c).normalize()
 }

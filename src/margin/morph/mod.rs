@@ -10,17 +10,20 @@
 //! of the space, in stations of equal arc length, and not the numbers that made it. So both ends are
 //! exact, whatever they came from: landmarks, lobes or a polygon; and it needs no fit.
 
+mod flank;
+mod marks;
+mod numbers;
+mod repair;
 mod space;
 mod teeth;
 #[cfg(test)]
 mod tests;
 
-use glam::DVec2;
-
 use super::detail::{self, Tooth, ToothForm, ToothType};
-use super::{Landmark, LandmarkKind, Margin, MarginError, MarginKind, MarginSpec, Outline};
-use crate::geometry::nurbs;
+use super::{LandmarkKind, Margin, MarginError, MarginSpec, Outline};
+use crate::geometry::{nurbs, polygon};
 use crate::seed::Seed;
+use flank::Flank;
 
 /// What can be done about an outline on the way that crosses itself.
 const HINT: &str = "that is on the way between the two; give a reference with --via";
@@ -42,7 +45,7 @@ pub struct MorphPath {
     given: usize,
     weights: Vec<f64>,
     specs: Vec<MarginSpec>,
-    shapes: Vec<space::Shape>,
+    way: Way,
     /// By edge, by shape, the teeth that answer each other; `None` when teeth are part of the shapes.
     teeth: Option<Vec<Vec<Vec<Tooth>>>>,
     forms: Vec<ToothForm>,
@@ -66,13 +69,13 @@ impl MorphPath {
         let kept: Vec<usize> =
             (0..=last).filter(|&i| i == 0 || i == last || leaves[i].weight > 0.0).collect();
         let weight = |&i: &usize| if i == 0 || i == last { 1.0 } else { leaves[i].weight };
-        let weights = kept.iter().map(weight).collect();
+        let weights: Vec<f64> = kept.iter().map(weight).collect();
         let specs: Vec<MarginSpec> = kept.iter().map(|&i| leaves[i].margin.clone()).collect();
         let entire: Vec<Outline> = specs
             .iter()
             .map(|spec| Ok(super::entire(spec)?.to_outline()))
             .collect::<Result<_, MarginError>>()?;
-        let edges = |outline: &Outline| {
+        let edges = |outline: &Outline| -> Vec<(bool, bool)> {
             let turns = outline.landmarks.iter().filter(|mark| {
                 matches!(mark.kind, LandmarkKind::LobeTip { .. } | LandmarkKind::Valley)
             });
@@ -80,8 +83,12 @@ impl MorphPath {
                 .map(|mark| (mark.vertex > outline.apex, mark.kind == LandmarkKind::Valley))
                 .collect()
         };
-        let first: Vec<(bool, bool)> = edges(&entire[0]);
-        let alike = entire.iter().all(|outline| edges(outline) == first);
+        // Lobes that a polygon does not tell of are found on it; its teeth know nothing of them.
+        let found = entire.iter().any(|outline| {
+            !Flank::knows_lobes(outline)
+                && Flank::both(outline).iter().any(|flank| !flank.turns.is_empty())
+        });
+        let alike = !found && entire.iter().all(|outline| edges(outline) == edges(&entire[0]));
         let (outlines, teeth) = if alike {
             let plans = specs.iter().zip(&entire);
             let plans: Vec<Vec<Vec<Tooth>>> = plans
@@ -97,13 +104,9 @@ impl MorphPath {
                 specs.iter().map(|spec| Ok(super::build(spec, seed)?.to_outline())).collect();
             (built?, None)
         };
-        let sides: Vec<_> = specs
-            .iter()
-            .map(|spec| (spec.kind == MarginKind::Unilobed).then(|| spec.sides()))
-            .collect();
-        let shapes = space::unified(&outlines, &sides);
+        let way = Way::new(&specs, &outlines, &weights)?;
         let forms = teeth::forms(&specs);
-        Ok(Self { kept, given: leaves.len(), weights, specs, shapes, teeth, forms, seed })
+        Ok(Self { kept, given: leaves.len(), weights, specs, way, teeth, forms, seed })
     }
 
     /// How much each of the given leaves counts at `u` (0 the first, 1 the last).
@@ -127,11 +130,9 @@ impl MorphPath {
             return super::build(&self.specs[end], self.seed);
         }
         let shares = nurbs::shares(&self.weights, u);
-        let leaves = || self.specs.iter().zip(&shares);
-        let length = leaves().map(|(spec, share)| spec.length_mm * share).sum();
-        let entire = space::mixed(&self.shapes, &shares, length);
+        let spec = self.mixed(&shares);
+        let entire = self.way.outline(&shares, u, &spec)?;
         let Some(teeth) = &self.teeth else { return Margin::from_outline(entire, HINT) };
-        let spec = self.detail_at(&shares, length);
         let plain = Margin::from_outline(entire, HINT)?;
         if detail::is_plain(&spec) {
             return Ok(plain);
@@ -142,13 +143,13 @@ impl MorphPath {
         Margin::from_outline(outline, HINT)
     }
 
-    /// The settings of detail on the way.
-    fn detail_at(&self, shares: &[f64], length: f64) -> MarginSpec {
+    /// The settings of length and detail on the way, and of the margin where leaves are of one structure.
+    fn mixed(&self, shares: &[f64]) -> MarginSpec {
         let mix = |value: fn(&MarginSpec) -> f64| -> f64 {
             self.specs.iter().zip(shares).map(|(spec, share)| value(spec) * share).sum()
         };
         let mut spec = self.specs[self.specs.len() - 1].clone();
-        spec.length_mm = length;
+        spec.length_mm = mix(|spec| spec.length_mm);
         spec.asymmetry = mix(|spec| spec.asymmetry);
         if self.specs.iter().any(|spec| spec.teeth.r#type != ToothType::None) {
             // Any type and depth: teeth are carved as planned.
@@ -160,11 +161,14 @@ impl MorphPath {
         spec.waves.irregularity = mix(|spec| spec.waves.irregularity);
         spec.roughness.height_mm = mix(|spec| spec.roughness.height_mm);
         spec.roughness.grain_mm = mix(|spec| spec.roughness.grain_mm);
-        spec
+        match &self.way {
+            Way::Numbers(leaves) => numbers::mixed(leaves, shares, &spec),
+            Way::Space { .. } => spec,
+        }
     }
 
-    /// The margin at `u` as settings: at the ends the leaves' own, in between a polygon with its
-    /// landmarks.
+    /// The margin at `u` as settings: the leaves' own at the ends; in between those of a parametric leaf
+    /// where all leaves are and have one structure and no teeth, else a polygon with its landmarks.
     ///
     /// # Errors
     ///
@@ -174,37 +178,100 @@ impl MorphPath {
             let end = if u <= 0.0 { 0 } else { self.specs.len() - 1 };
             return Ok(self.specs[end].clone());
         }
-        Ok(MarginSpec::of_margin(&self.at(u)?))
+        let spec = self.mixed(&nurbs::shares(&self.weights, u));
+        let parametric =
+            matches!(self.way, Way::Numbers(_)) && spec.teeth.r#type == ToothType::None;
+        if parametric { Ok(spec) } else { Ok(MarginSpec::of_margin(&self.at(u)?)) }
     }
 }
 
-impl MarginSpec {
-    /// A margin as a polygon with the landmarks that veins read.
-    #[must_use]
-    pub fn of_margin(margin: &Margin) -> Self {
-        let point = |p: DVec2| [p.x, p.y];
-        let mut tips: Vec<Vec<[f64; 2]>> = Vec::new();
-        let mut lobes = Vec::new();
-        for &Landmark { vertex, kind } in margin.landmarks() {
-            let at = margin.outline()[vertex];
-            match kind {
-                LandmarkKind::Tooth { order } => {
-                    let order = usize::from(order.max(1));
-                    tips.resize(tips.len().max(order), Vec::new());
-                    tips[order - 1].push(point(at));
-                }
-                LandmarkKind::LobeTip { origin } => lobes.push(vec![point(origin), point(at)]),
-                _ => {}
+/// How leaves are mixed.
+#[derive(Debug, Clone)]
+enum Way {
+    /// Number by number: they are parametric and of one structure.
+    Numbers(Vec<MarginSpec>),
+    /// As margins with marks that answer each other.
+    Space { space: space::Space, ease: f64 },
+}
+
+/// Places on the path at which it is tried.
+const TRIED: u32 = 48;
+
+impl Way {
+    fn new(
+        specs: &[MarginSpec],
+        outlines: &[Outline],
+        weights: &[f64],
+    ) -> Result<Self, MarginError> {
+        let tried = || (1..TRIED).map(|i| f64::from(i) / f64::from(TRIED));
+        if let Some(leaves) = numbers::alike(specs)? {
+            let builds = |u: f64| {
+                let shares = nurbs::shares(weights, u);
+                super::entire(&numbers::mixed(&leaves, &shares, &leaves[0])).is_ok()
+            };
+            if tried().all(builds) {
+                return Ok(Self::Numbers(leaves));
             }
         }
-        Self {
-            kind: MarginKind::Polygon,
-            length_mm: margin.length_mm(),
-            polygon_mm: margin.outline().iter().copied().map(point).collect(),
-            cuts_mm: margin.cuts().iter().map(|l| l.iter().copied().map(point).collect()).collect(),
-            tooth_tips_mm: tips,
-            lobe_veins_mm: lobes,
-            ..Self::default()
+        let space = space::Space::of(outlines);
+        // What must be cut away, at the worst place: as little as can be had for the least easing.
+        let lost = |ease: f64| {
+            let at = |u: f64| {
+                let shares = nurbs::shares(weights, u);
+                loss(&space.mixed(&shares, 1.0, 1.0 - ease * bump(u)))
+            };
+            tried().map(at).fold(0.0, f64::max)
+        };
+        let mut ease = 0.0;
+        let mut least = lost(ease);
+        for more in EASES {
+            if least <= SMALL {
+                break;
+            }
+            let now = lost(more);
+            if now < least {
+                (ease, least) = (more, now);
+            }
+        }
+        Ok(Self::Space { space, ease })
+    }
+
+    /// The outline without teeth; `spec` is the leaf on the way.
+    fn outline(&self, shares: &[f64], u: f64, spec: &MarginSpec) -> Result<Outline, MarginError> {
+        match self {
+            Self::Numbers(_) => Ok(super::entire(spec)?.to_outline()),
+            Self::Space { space, ease } => {
+                let outline = space.mixed(shares, spec.length_mm, 1.0 - ease * bump(u));
+                if polygon::self_crossing(&outline.points).is_none() {
+                    return Ok(outline);
+                }
+                let at = polygon::self_crossing(&outline.points).unwrap_or_default();
+                let crossing = MarginError::SelfCrossing { x: at.x, y: at.y, hint: HINT };
+                repair::without_loops(outline).ok_or(crossing)
+            }
         }
     }
+}
+
+/// How far margins on the way give up their own detail, from little to all, where they would cross
+/// themselves otherwise.
+const EASES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+
+/// Loops that are shorter than this, as a share of the outline, are cut off without easing.
+const SMALL: f64 = 0.02;
+
+/// The share of an outline that must be cut off to make it simple; 1 when that does not help.
+fn loss(outline: &Outline) -> f64 {
+    let whole = polygon::perimeter(&outline.points);
+    if polygon::self_crossing(&outline.points).is_none() {
+        return 0.0;
+    }
+    let left = repair::without_loops(outline.clone());
+    left.map_or(1.0, |left| 1.0 - polygon::perimeter(&left.points) / whole)
+}
+
+/// 0 at both ends of the path, 1 on most of it.
+fn bump(u: f64) -> f64 {
+    let t = (4.0 * u * (1.0 - u)).clamp(0.0, 1.0);
+    t * (2.0 - t)
 }

@@ -1,380 +1,216 @@
-//! The space in which margins are points: the same stations between the same landmarks.
+//! The space in which margins are points.
+//!
+//! A point of the space has the numbers of section 7.2: for every lobe tip the origin, angle and length of
+//! its vein, for every valley its angle and distance from between the origins beside it, for landmarks of
+//! unilobed blades their places. Between two marks stands the margin itself, as offsets from the line
+//! between them, at stations that all margins share: so nothing of a margin is lost, whatever it is, and
+//! a flank turns with its lobe.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec2;
 
-use super::super::parametric::SideSpec;
-use super::super::{Landmark, LandmarkKind, Outline};
-use crate::geometry::alignment;
+use super::super::{Landmark, LandmarkKind, Outline, lobes};
+use super::flank::Flank;
+use super::marks::{self, Mark, MarkKind};
 
-/// A margin as a point of the common space.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Shape {
-    /// The stations, of a blade of length 1.
-    points: Vec<DVec2>,
-    /// Index of the apex.
-    apex: usize,
-    /// What stands where, and where a lobe's vein begins.
-    marks: Vec<(usize, LandmarkKind, DVec2)>,
+/// Margins in one space.
+#[derive(Debug, Clone)]
+pub(super) struct Space {
+    right: Side,
+    left: Side,
 }
 
-/// An outline of length 1, by the way along it from the base.
-struct Ring {
-    /// The vertices, the first repeated at the end.
-    points: Vec<DVec2>,
-    ways: Vec<f64>,
-    apex: usize,
-    turns: Vec<Turn>,
+/// One side of all margins.
+#[derive(Debug, Clone)]
+struct Side {
+    kinds: Vec<MarkKind>,
+    /// Between a mark and the next, the shares of the way at which the stations stand.
+    stations: Vec<Vec<f64>>,
+    shapes: Vec<Shape>,
 }
 
-/// A lobe tip or a valley.
+/// One side of one margin.
+#[derive(Debug, Clone)]
+struct Shape {
+    marks: Vec<Placed>,
+    /// By interval and station: the offset from the line between the marks, x along it.
+    offsets: Vec<Vec<DVec2>>,
+    /// Whether nothing of this side lies beyond the axis below the base.
+    keeps_side: bool,
+}
+
+/// A mark by an angle, clockwise from +y (radians), and a distance from somewhere.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
-    vertex: usize,
-    kind: LandmarkKind,
-    origin: DVec2,
+struct Placed {
+    from: DVec2,
+    angle: f64,
+    distance: f64,
 }
 
-impl Turn {
-    fn is_tip(&self) -> bool {
-        self.kind != LandmarkKind::Valley
-    }
-}
-
-impl Ring {
-    fn of(outline: &Outline) -> Self {
-        let length = outline.points[outline.apex].y;
-        let mut points: Vec<DVec2> = outline.points.iter().map(|p| *p / length).collect();
-        points.push(points[0]);
-        let mut way = 0.0;
-        let mut ways = vec![0.0];
-        ways.extend(points.windows(2).map(|w| {
-            way += w[0].distance(w[1]);
-            way
-        }));
-        let turns = outline.landmarks.iter().filter_map(|mark| {
-            let origin = match mark.kind {
-                LandmarkKind::LobeTip { origin } => origin / length,
-                LandmarkKind::Valley => DVec2::ZERO,
-                _ => return None,
-            };
-            let inner = mark.vertex != 0 && mark.vertex != outline.apex;
-            inner.then_some(Turn { vertex: mark.vertex, kind: mark.kind, origin })
-        });
-        Self { turns: turns.collect(), points, ways, apex: outline.apex }
+impl Placed {
+    fn new(at: DVec2, from: DVec2) -> Self {
+        let off = at - from;
+        let angle = libm::atan2(off.x, off.y);
+        // A lobe that reaches over the axis below the base has turned farther, not the other way.
+        let angle = if angle < -FRAC_PI_2 { angle + TAU } else { angle };
+        Self { from, angle, distance: off.length() }
     }
 
-    fn round(&self) -> f64 {
-        self.ways[self.ways.len() - 1]
-    }
-
-    fn at(&self, way: f64) -> DVec2 {
-        let last = self.ways.len() - 1;
-        let i = self.ways.partition_point(|&w| w <= way).clamp(1, last) - 1;
-        let long = self.ways[i + 1] - self.ways[i];
-        let t = if long > 0.0 { ((way - self.ways[i]) / long).clamp(0.0, 1.0) } else { 0.0 };
-        self.points[i].lerp(self.points[i + 1], t)
-    }
-
-    /// The way to the vertex of one side nearest to `p`.
-    fn way_near(&self, p: DVec2, right: bool) -> f64 {
-        let last = self.points.len() - 1;
-        let range = if right { 0..=self.apex } else { self.apex..=last };
-        let far = |i: &usize| self.points[*i].distance_squared(p);
-        self.ways[range.min_by(|i, j| far(i).total_cmp(&far(j))).unwrap_or(0)]
-    }
-
-    /// The way to where a ray meets the outline last; `None` when it does not.
-    fn way_to(&self, from: DVec2, towards: DVec2) -> Option<f64> {
-        let mut best: Option<(f64, f64)> = None;
-        for i in 0..self.points.len() - 1 {
-            let (a, b) = (self.points[i], self.points[i + 1]);
-            let across = towards.perp_dot(b - a);
-            if across == 0.0 {
-                continue;
-            }
-            let (far, t) =
-                ((a - from).perp_dot(b - a) / across, (a - from).perp_dot(towards) / across);
-            if far > 1e-6 && (0.0..=1.0).contains(&t) && best.is_none_or(|(most, _)| far > most) {
-                best = Some((far, self.ways[i] + t * (self.ways[i + 1] - self.ways[i])));
-            }
-        }
-        best.map(|(_, way)| way)
+    fn at(&self) -> DVec2 {
+        self.from + DVec2::new(libm::sin(self.angle), libm::cos(self.angle)) * self.distance
     }
 }
 
-/// All outlines in one space. `sides` are the landmarks of unilobed ones: right and left.
-pub(super) fn unified(outlines: &[Outline], sides: &[Option<[SideSpec; 2]>]) -> Vec<Shape> {
-    let rings: Vec<Ring> = outlines.iter().map(Ring::of).collect();
-    let lobes = |ring: &Ring| ring.turns.iter().filter(|turn| turn.is_tip()).count();
-    let most = rings.iter().map(lobes).max().unwrap_or(0);
-    let model = rings.iter().position(|ring| lobes(ring) == most).unwrap_or(0);
-    let marks: Vec<Vec<f64>> = if most > 0 {
-        rings.iter().map(|ring| lobed_marks(ring, &rings[model])).collect()
-    } else {
-        unilobed_marks(&rings, sides)
-    };
-    let model = &rings[model];
-    // Stations: every vertex of every outline, by its share of the way between two landmarks.
-    let intervals = marks[0].len() - 1;
-    let stations: Vec<Vec<f64>> = (0..intervals)
-        .map(|j| {
-            let mut shares = vec![0.0];
-            for (ring, marks) in rings.iter().zip(&marks) {
-                let (from, to) = (marks[j], marks[j + 1]);
-                let inner = ring.ways.iter().filter(|&&way| way > from && way < to);
-                shares.extend(inner.map(|way| (way - from) / (to - from)));
-            }
-            shares.retain(|share| *share == 0.0 || (LEAST..1.0 - LEAST).contains(share));
-            shares.sort_by(f64::total_cmp);
-            shares.dedup_by(|b, a| *b - *a < LEAST);
-            shares
-        })
-        .collect();
-    let mut apex = 0;
-    let mut turns = Vec::new();
-    let mut index = 0;
-    for (j, shares) in stations.iter().enumerate() {
-        if j > 0 && is_apex(&rings, &marks, j) {
-            apex = index;
-        }
-        if let Some(turn) = turn_at(model, j, most) {
-            turns.push((index, turn));
-        }
-        index += shares.len();
-    }
-    rings
-        .iter()
-        .zip(&marks)
-        .map(|(ring, marks)| {
-            let inside = |(j, shares): (usize, &Vec<f64>)| -> Vec<DVec2> {
-                let (from, to) = (marks[j], marks[j + 1]);
-                shares.iter().map(|share| ring.at(from + share * (to - from))).collect()
-            };
-            let points: Vec<DVec2> = stations.iter().enumerate().flat_map(inside).collect();
-            let near = |turn: &Turn| {
-                // A lobe of its own here begins where it does, another one where the model's does.
-                let own = ring.turns.iter().filter(|own| own.is_tip());
-                let same = own.map(|own| (own.origin, ring.points[own.vertex]));
-                let at = marks_position(model, turn).map(|j| ring.at(marks[j]));
-                let mut same =
-                    same.filter(|(_, tip)| at.is_some_and(|at| at.distance(*tip) < 1e-6));
-                same.next().map_or(turn.origin, |(origin, _)| origin)
-            };
-            let marks = turns.iter().map(|(i, turn)| (*i, turn.kind, near(turn))).collect();
-            Shape { points, apex, marks }
-        })
-        .collect()
-}
-
-/// Stations closer than this, as a share of the way between two landmarks, are one.
+/// Stations closer than this, as a share of the way between two marks, are one.
 const LEAST: f64 = 1e-5;
 
-/// The marks of a lobed space, in order: base, the model's turns with the apex among them, base.
-fn order_of(model: &Ring) -> Vec<Option<Turn>> {
-    let mut list: Vec<Option<Turn>> = vec![None];
-    let (right, left): (Vec<Turn>, Vec<Turn>) =
-        model.turns.iter().partition(|turn| turn.vertex < model.apex);
-    list.extend(right.into_iter().map(Some));
-    list.push(None);
-    list.extend(left.into_iter().map(Some));
-    list.push(None);
-    list
-}
+impl Space {
+    /// All outlines in one space.
+    pub(super) fn of(outlines: &[Outline]) -> Self {
+        let flanks: Vec<[Flank; 2]> = outlines.iter().map(Flank::both).collect();
+        let side = |k: usize| Side::of(&flanks.iter().map(|both| &both[k]).collect::<Vec<_>>());
+        Self { right: side(0), left: side(1) }
+    }
 
-fn turn_at(model: &Ring, j: usize, lobes: usize) -> Option<Turn> {
-    if lobes == 0 { None } else { order_of(model)[j] }
-}
-
-fn marks_position(model: &Ring, turn: &Turn) -> Option<usize> {
-    order_of(model).iter().position(|other| other.is_some_and(|o| o.vertex == turn.vertex))
-}
-
-/// Whether mark `j` is the apex: it is in every outline.
-fn is_apex(rings: &[Ring], marks: &[Vec<f64>], j: usize) -> bool {
-    rings.iter().zip(marks).all(|(ring, marks)| marks[j] == ring.ways[ring.apex])
-}
-
-/// Base, tail, waist, shoulder, apex and down the other side, after 7.2.1.
-fn unilobed_marks(rings: &[Ring], sides: &[Option<[SideSpec; 2]>]) -> Vec<Vec<f64>> {
-    let ends = |ring: &Ring| vec![0.0, ring.ways[ring.apex], ring.round()];
-    let Some(sides) = sides.iter().cloned().collect::<Option<Vec<[SideSpec; 2]>>>() else {
-        return rings.iter().map(ends).collect();
-    };
-    let mut marks: Vec<Vec<f64>> = rings.iter().map(|_| vec![0.0]).collect();
-    for (s, right) in [(0, true), (1, false)] {
-        let sign = if right { 1.0 } else { -1.0 };
-        // From the base: the waist, and what is known of the extensions, by the way along the side.
-        let total = |ring: &Ring| {
-            let apex = ring.ways[ring.apex];
-            if right { apex } else { ring.round() - apex }
-        };
-        let from_base = |ring: &Ring, x: f64, y: f64| {
-            let way = ring.way_near(DVec2::new(sign * x, y), right);
-            if right { way } else { ring.round() - way }
-        };
-        let each = || rings.iter().zip(&sides).map(|(ring, side)| (ring, &side[s]));
-        let waists: Vec<f64> =
-            each().map(|(ring, side)| from_base(ring, side.waist_x, side.waist_y)).collect();
-        let tails = each().map(|(ring, side)| {
-            (side.tail_depth > 0.0).then(|| from_base(ring, side.tail_x, -side.tail_depth))
+    /// The outline of a length between the margins. Of its own detail each margin gives `detail`; at 0
+    /// only marks are left, and lines between them.
+    pub(super) fn mixed(&self, shares: &[f64], length: f64, detail: f64) -> Outline {
+        let (mut right, marks) = self.right.mixed(shares, detail);
+        let (left, others) = self.left.mixed(shares, detail);
+        let apex = right.len() - 1;
+        right[0].x = 0.0;
+        right[apex] = DVec2::Y;
+        let mirrored = |p: DVec2| DVec2::new(-p.x, p.y);
+        let last = left.len() - 1;
+        right.extend(left[1..last].iter().rev().copied().map(mirrored));
+        let others = others.into_iter().rev().map(|mark| Landmark {
+            vertex: apex + last - mark.vertex,
+            kind: mark.kind.mapped(mirrored),
         });
-        let shoulders = each().map(|(ring, side)| {
-            let y = 1.0 + side.shoulder_height;
-            (side.shoulder_height > 0.0).then(|| total(ring) - from_base(ring, side.shoulder_x, y))
-        });
-        let upper: Vec<f64> =
-            rings.iter().zip(&waists).map(|(ring, waist)| total(ring) - waist).collect();
-        let tails = shared_ratio(&tails.collect::<Vec<_>>(), &waists);
-        let shoulders = shared_ratio(&shoulders.collect::<Vec<_>>(), &upper);
-        for (k, (ring, marks)) in rings.iter().zip(&mut marks).enumerate() {
-            let mut side: Vec<f64> = Vec::new();
-            side.extend(tails.as_ref().map(|tails| tails[k]));
-            side.push(waists[k]);
-            side.extend(shoulders.as_ref().map(|shoulders| total(ring) - shoulders[k]));
-            if right {
-                marks.extend(side);
-                marks.push(ring.ways[ring.apex]);
-            } else {
-                marks.extend(side.iter().rev().map(|way| ring.round() - way));
-                marks.push(ring.round());
-            }
-        }
+        let landmarks = marks.into_iter().chain(others).collect();
+        Outline { points: right, apex, cuts: Vec::new(), landmarks }.scaled(DVec2::splat(length))
     }
-    marks
 }
 
-/// Equation 7.1 along the chain of leaves: where one has no extension, its landmark divides the way
-/// from base to waist as that of the nearest leaf with one does. `None` when no leaf has one.
-fn shared_ratio(known: &[Option<f64>], waists: &[f64]) -> Option<Vec<f64>> {
-    let mut ratios: Vec<Option<f64>> =
-        known.iter().zip(waists).map(|(way, waist)| way.map(|way| way / waist)).collect();
-    ratios.iter().flatten().next()?;
-    while ratios.iter().any(Option::is_none) {
-        let before = ratios.clone();
-        for k in 0..ratios.len() {
-            if before[k].is_none() {
-                let lower = k.checked_sub(1).and_then(|j| before[j]);
-                ratios[k] = lower.or_else(|| before.get(k + 1).copied().flatten());
-            }
-        }
-    }
-    let place = |(ratio, waist): (&Option<f64>, &f64)| ratio.unwrap_or(0.5) * waist;
-    Some(ratios.iter().zip(waists).map(place).collect())
-}
-
-/// A lobe answers one of the model's when their tips are seen from the base at less than this angle
-/// from each other (degrees).
-const SAME_LOBE_DEG: f64 = 40.0;
-
-/// Where a margin has the model's lobe tips and valleys, after 7.2.2: its own where they answer each
-/// other; else where the model's vein, cast from its origin, meets the margin, and half-way between
-/// tips.
-fn lobed_marks(ring: &Ring, model: &Ring) -> Vec<f64> {
-    let order = order_of(model);
-    let apex = ring.ways[ring.apex];
-    let mut marks = vec![0.0];
-    for right in [true, false] {
-        let (low, high) = if right { (0.0, apex) } else { (apex, ring.round()) };
-        let end = order.iter().skip(1).position(Option::is_none).map_or(order.len(), |i| i + 1);
-        let turns: Vec<Turn> = if right {
-            order[1..end].iter().flatten().copied().collect()
-        } else {
-            order[end + 1..].iter().flatten().copied().collect()
-        };
-        marks.extend(side_marks(ring, model, &turns, right, low, high));
-        marks.push(high);
-    }
-    marks
-}
-
-fn side_marks(
-    ring: &Ring,
-    model: &Ring,
-    turns: &[Turn],
-    right: bool,
-    low: f64,
-    high: f64,
-) -> Vec<f64> {
-    let on_side = |turn: &&Turn| (turn.vertex < ring.apex) == right;
-    let own: Vec<&Turn> = ring.turns.iter().filter(on_side).collect();
-    if own.len() == turns.len() && own.iter().zip(turns).all(|(a, b)| a.is_tip() == b.is_tip()) {
-        return own.iter().map(|turn| ring.ways[turn.vertex]).collect();
-    }
-    let tips: Vec<&Turn> = turns.iter().filter(|turn| turn.is_tip()).collect();
-    let own_tips: Vec<&&Turn> = own.iter().filter(|turn| turn.is_tip()).collect();
-    let angle = |p: DVec2| libm::atan2(p.x.abs(), p.y).to_degrees();
-    let apart = |i: usize, j: usize| {
-        let (a, b) = (ring.points[own_tips[i].vertex], model.points[tips[j].vertex]);
-        (angle(a) - angle(b)).abs()
-    };
-    // The own tips that answer the model's, in order, with the most likeness.
-    let gain = |i: usize, j: usize| (1.0 - apart(i, j) / SAME_LOBE_DEG).max(-1.0);
-    let mut ways: Vec<Option<f64>> = vec![None; tips.len()];
-    for (i, answer) in alignment::in_order(own_tips.len(), tips.len(), gain).iter().enumerate() {
-        if let Some(j) = answer {
-            ways[*j] = Some(ring.ways[own_tips[i].vertex]);
-        }
-    }
-    // The others by their veins, kept in order between those that are known.
-    let known = ways.clone();
-    for (j, tip) in tips.iter().enumerate() {
-        if known[j].is_some() {
-            continue;
-        }
-        let towards = model.points[tip.vertex] - tip.origin;
-        let before = ways[..j].iter().rev().find_map(|way| *way).unwrap_or(low);
-        let next = (j..tips.len()).find_map(|k| known[k].map(|way| (k, way)));
-        let (k, after) = next.unwrap_or((tips.len(), high));
-        let cast = ring.way_to(tip.origin, towards.normalize_or_zero());
-        let room = (after - before) / (k - j + 1) as f64;
-        let even = before + room;
-        let way = cast.filter(|way| *way > before + 0.25 * room && *way < after - 0.25 * room);
-        ways[j] = Some(way.unwrap_or(even));
-    }
-    let ways: Vec<f64> = ways.into_iter().flatten().collect();
-    // Valleys: an own one between the two tips, or the middle of the way.
-    let mut next = 0;
-    turns
-        .iter()
-        .map(|turn| {
-            if turn.is_tip() {
-                next += 1;
-                return ways[next - 1];
-            }
-            let before = if next > 0 { ways[next - 1] } else { low };
-            let after = ways.get(next).copied().unwrap_or(high);
-            let middle = 0.5 * (before + after);
-            let inside = |way: &f64| *way > before && *way < after;
-            let valleys = own.iter().filter(|own| !own.is_tip()).map(|own| ring.ways[own.vertex]);
-            let near = |a: &f64, b: &f64| (a - middle).abs().total_cmp(&(b - middle).abs());
-            valleys.filter(inside).min_by(near).unwrap_or(middle)
-        })
-        .collect()
-}
-
-/// The outline of a length between shapes of one space.
-pub(super) fn mixed(shapes: &[Shape], shares: &[f64], length: f64) -> Outline {
-    let mix = |point: &dyn Fn(&Shape) -> DVec2| -> DVec2 {
-        shapes.iter().zip(shares).map(|(shape, share)| point(shape) * *share).sum::<DVec2>()
-            * length
-    };
-    let first = &shapes[0];
-    let mut points: Vec<DVec2> =
-        (0..first.points.len()).map(|i| mix(&|shape| shape.points[i])).collect();
-    // Rounding must not take the two ends off the axis.
-    points[0].x = 0.0;
-    points[first.apex] = DVec2::new(0.0, length);
-    let landmarks = (0..first.marks.len())
-        .map(|j| {
-            let (vertex, kind, _) = first.marks[j];
-            let kind = match kind {
-                LandmarkKind::LobeTip { .. } => {
-                    LandmarkKind::LobeTip { origin: mix(&|shape| shape.marks[j].2) }
+impl Side {
+    fn of(flanks: &[&Flank]) -> Self {
+        let (kinds, marks) = marks::marks(flanks);
+        // Stations: every vertex of every margin, by its share of the way between two marks.
+        let stations: Vec<Vec<f64>> = (0..kinds.len() - 1)
+            .map(|j| {
+                let mut shares = vec![0.0];
+                for (flank, marks) in flanks.iter().zip(&marks) {
+                    let (from, to) = (marks[j].way, marks[j + 1].way);
+                    let inner = flank.ways().iter().filter(|&&way| way > from && way < to);
+                    shares.extend(inner.map(|way| (way - from) / (to - from)));
                 }
-                other => other,
+                shares.retain(|share| *share == 0.0 || (LEAST..1.0 - LEAST).contains(share));
+                shares.sort_by(f64::total_cmp);
+                shares.dedup_by(|b, a| *b - *a < LEAST);
+                shares
+            })
+            .collect();
+        let shape =
+            |(flank, marks): (&&Flank, &Vec<Mark>)| Shape::of(flank, &kinds, marks, &stations);
+        let shapes = flanks.iter().zip(&marks).map(shape).collect();
+        Self { kinds, stations, shapes }
+    }
+
+    /// The side between the margins, from base to apex, with the landmarks on it.
+    fn mixed(&self, shares: &[f64], detail: f64) -> (Vec<DVec2>, Vec<Landmark>) {
+        let each = || self.shapes.iter().zip(shares);
+        let mix = |j: usize| {
+            let mut sum = Placed { from: DVec2::ZERO, angle: 0.0, distance: 0.0 };
+            for (shape, share) in each() {
+                let mark = &shape.marks[j];
+                sum.from += mark.from * *share;
+                sum.angle += mark.angle * share;
+                sum.distance += mark.distance * share;
+            }
+            // Landmarks and ends are places, not directions.
+            let by_angle = matches!(self.kinds[j], MarkKind::Tip | MarkKind::Valley);
+            let place = if by_angle {
+                sum.at()
+            } else {
+                each().map(|(shape, share)| shape.marks[j].at() * *share).sum()
             };
-            Landmark { vertex, kind }
-        })
-        .collect();
-    Outline { points, apex: first.apex, cuts: Vec::new(), landmarks }
+            (place, sum.from)
+        };
+        let placed: Vec<(DVec2, DVec2)> = (0..self.kinds.len()).map(mix).collect();
+        let mut points = Vec::with_capacity(self.stations.iter().map(Vec::len).sum::<usize>() + 1);
+        let mut landmarks = Vec::new();
+        for (j, stations) in self.stations.iter().enumerate() {
+            let kind = match self.kinds[j] {
+                MarkKind::Tip => Some(LandmarkKind::LobeTip { origin: placed[j].1 }),
+                MarkKind::Valley => Some(LandmarkKind::Valley),
+                _ => None,
+            };
+            landmarks.extend(kind.map(|kind| Landmark { vertex: points.len(), kind }));
+            let (from, to) = (placed[j].0, placed[j + 1].0);
+            let along = (to - from).normalize_or(DVec2::Y);
+            for (k, share) in stations.iter().enumerate() {
+                let offset: DVec2 = each().map(|(shape, part)| shape.offsets[j][k] * *part).sum();
+                points.push(from.lerp(to, *share) + along.rotate(offset * detail));
+            }
+        }
+        points.push(placed[placed.len() - 1].0);
+        if self.shapes.iter().all(|shape| shape.keeps_side) {
+            cut_back(&mut points, &mut landmarks);
+        }
+        (points, landmarks)
+    }
+}
+
+impl Shape {
+    fn of(flank: &Flank, kinds: &[MarkKind], marks: &[Mark], stations: &[Vec<f64>]) -> Self {
+        let vein = |k: &usize| kinds[*k] == MarkKind::Tip;
+        let placed = (0..kinds.len())
+            .map(|j| {
+                let from = match kinds[j] {
+                    MarkKind::Tip => marks[j].origin,
+                    MarkKind::Valley => {
+                        let below =
+                            (0..j).rev().find(vein).map_or(DVec2::ZERO, |k| marks[k].origin);
+                        let above = (j..kinds.len()).find(vein).map_or(below, |k| marks[k].origin);
+                        below.midpoint(above)
+                    }
+                    MarkKind::End | MarkKind::Landmark => DVec2::ZERO,
+                };
+                Placed::new(flank.at(marks[j].way), from)
+            })
+            .collect();
+        let offsets = stations
+            .iter()
+            .enumerate()
+            .map(|(j, stations)| {
+                let (way, end) = (marks[j].way, marks[j + 1].way);
+                let (from, to) = (flank.at(way), flank.at(end));
+                let back = (to - from).normalize_or(DVec2::Y) * DVec2::new(1.0, -1.0);
+                let offset = |share: &f64| {
+                    back.rotate(flank.at(way + share * (end - way)) - from.lerp(to, *share))
+                };
+                stations.iter().map(offset).collect()
+            })
+            .collect();
+        let keeps_side = flank.points().iter().all(|p| p.y >= 0.0 || p.x > -1e-9);
+        Self { marks: placed, offsets, keeps_side }
+    }
+}
+
+/// Cuts a side back to a slit where it would reach over the axis below the base, as
+/// [`lobes`](super::super::lobes) does.
+fn cut_back(points: &mut Vec<DVec2>, landmarks: &mut Vec<Landmark>) {
+    let last = points.len() - 1;
+    let beyond = |p: &DVec2| p.x < lobes::SLIT && p.y < 0.0;
+    let Some(end) = points[1..last].iter().rposition(beyond).map(|i| i + 1) else { return };
+    if !points[1..=end].iter().any(|p| p.x < 0.0) {
+        return;
+    }
+    let (a, b) = (points[end], points[end + 1]);
+    let t = if b.x > a.x { ((lobes::SLIT - a.x) / (b.x - a.x)).clamp(0.0, 1.0) } else { 1.0 };
+    let exit = DVec2::new(lobes::SLIT, a.lerp(b, t).y);
+    points.splice(1..=end, [exit]);
+    landmarks.retain(|mark| mark.vertex == 0 || mark.vertex > end);
+    landmarks.iter_mut().filter(|mark| mark.vertex > end).for_each(|mark| mark.vertex -= end - 1);
 }

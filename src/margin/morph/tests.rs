@@ -1,8 +1,10 @@
+use glam::DVec2;
+
 use super::super::detail::{SmallTeethSpec, TeethSpec};
 use super::super::lobes::shorthand::LobingSpec;
 use super::*;
 use crate::geometry::polygon;
-use crate::margin::{build, parametric::SideSpec};
+use crate::margin::{MarginKind, build, parametric::SideSpec};
 
 const SEED: Seed = Seed(4);
 
@@ -176,5 +178,74 @@ fn frames_as_settings_are_the_same_margins_with_their_teeth() {
             marks.filter(|m| m.kind == LandmarkKind::Tooth { order: 1 }).count()
         };
         assert_eq!(first(&margin), first(&again));
+    }
+}
+
+/// Any margin: unilobed with extensions on either side, lobed, or an outline that knows nothing of itself.
+fn any_margin() -> impl proptest::strategy::Strategy<Value = MarginSpec> {
+    use proptest::prelude::*;
+    let side = (0.1..0.5, 0.25..0.6, any::<bool>(), any::<bool>()).prop_map(
+        |(waist_x, waist_y, tail, shoulder)| SideSpec {
+            waist_x,
+            waist_y,
+            base_angle_deg: if tail { 140.0 } else { 60.0 },
+            apex_angle_deg: if shoulder { 130.0 } else { 40.0 },
+            tail_x: 0.6 * waist_x,
+            tail_depth: if tail { 0.15 } else { 0.0 },
+            shoulder_x: 0.5 * waist_x,
+            shoulder_height: if shoulder { 0.1 } else { 0.0 },
+            ..SideSpec::default()
+        },
+    );
+    let unilobed = (side.clone(), side).prop_map(|(right, left)| MarginSpec {
+        right,
+        left,
+        ..MarginSpec::default()
+    });
+    let lobed = (2_u64..10).prop_map(lobed);
+    // A star of uneven rays over the base, its lowest ray the petiole's place.
+    let star = (prop::collection::vec((0.5..1.0, 0.15..0.45), 2..7)).prop_map(|rays| {
+        let count = rays.len() * 2;
+        let mut polygon_mm = vec![[0.0, 0.0]];
+        for (i, (tip, valley)) in rays.iter().chain(rays.iter().rev()).enumerate() {
+            let step = 280.0 / (count - 1) as f64;
+            let at = |degrees: f64, radius: f64| {
+                let (x, y) = degrees.to_radians().sin_cos();
+                [60.0 * radius * x, 60.0 * radius * y + 25.0]
+            };
+            let angle = 140.0 - step * i as f64;
+            if i == rays.len() {
+                polygon_mm.push([0.0, 85.0]);
+            }
+            polygon_mm.push(at(angle + 0.3 * step, *valley));
+            polygon_mm.push(at(angle, *tip));
+        }
+        MarginSpec {
+            kind: MarginKind::Polygon,
+            length_mm: 85.0,
+            polygon_mm,
+            ..MarginSpec::default()
+        }
+    });
+    prop_oneof![unilobed, lobed, star]
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn any_margin_turns_into_any_other(from in any_margin(), to in any_margin()) {
+        let buildable = build(&from, SEED).is_ok() && build(&to, SEED).is_ok();
+        proptest::prop_assume!(buildable);
+        let path = between(&from, &to);
+        for u in [0.0, 0.05, 0.3, 0.5, 0.7, 0.95, 1.0] {
+            let margin = path.at(u).map_err(|error| {
+                proptest::test_runner::TestCaseError::fail(format!("at {u}: {error}"))
+            })?;
+            proptest::prop_assert_eq!(margin.check(), None);
+            // Its settings make it again.
+            let again = build(&path.spec_at(u).expect("settings"), SEED).expect("a margin");
+            proptest::prop_assert!(apart(&margin, &again) < 1e-9);
+        }
     }
 }

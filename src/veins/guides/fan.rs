@@ -65,12 +65,36 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &
         let angle = (*p - base).angle_to(DVec2::Y).abs().to_degrees();
         angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(*p, 0.97))
     };
-    let arcs = runs(line.into_iter().filter(within), 3.0 * spec.fork_spacing_mm);
+    let arcs = |side: &[DVec2]| runs(side.iter().copied().filter(within), 3.0 * spec.fork_spacing_mm);
+    if ground.margin().is_peltate() {
+        // Both sides of the ray to the apex.
+        let tip = ground.margin().apex();
+        let distance = |i: &usize| line[*i].distance_squared(tip);
+        let apex = (0..line.len()).min_by(|i, j| distance(i).total_cmp(&distance(j))).unwrap_or(0);
+        let basal = (spec.primary_count.saturating_sub(1) / 2) as f64;
+        for side in [&line[..=apex], &line[apex..]] {
+            lay_arcs(spec, planter, root, arcs(side), basal, rng);
+        }
+    } else {
+        lay_arcs(spec, planter, root, arcs(&line), spec.primary_count as f64, rng);
+    }
+}
+
+/// Lays the veins of several stretches of the margin, of which `basal` leave the base.
+fn lay_arcs(
+    spec: &GuideSpec,
+    planter: &mut Planter<'_>,
+    root: u32,
+    arcs: Vec<Vec<DVec2>>,
+    basal: f64,
+    rng: &mut Rng,
+) {
+    let base = planter.ground.root();
     let total: f64 = arcs.iter().map(|arc| curve::length(arc)).sum();
     for arc in arcs {
         let length = curve::length(&arc);
         // The lobes of a cleft blade have basal veins of their own.
-        let basal = (spec.primary_count as f64 * length / total).round().max(1.0) as usize;
+        let basal = (basal * length / total).round().max(1.0) as usize;
         lay_arc(spec, planter, root, &Fan { base, arc, length }, basal, rng);
     }
 }

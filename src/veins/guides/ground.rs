@@ -66,6 +66,12 @@ impl<'a> Ground<'a> {
 
     /// How far the margin or a cut is from `p` in a direction.
     pub(super) fn cast(&self, p: DVec2, towards: DVec2) -> f64 {
+        // By rounding a ray aimed at a vertex can slip between its two edges.
+        let aside = || self.cast_between(p, DVec2::from_angle(1e-7).rotate(towards));
+        self.cast_between(p, towards).or_else(aside).unwrap_or(0.0)
+    }
+
+    fn cast_between(&self, p: DVec2, towards: DVec2) -> Option<f64> {
         let mut nearest = f64::INFINITY;
         for &(a, b) in &self.segments {
             let edge = b - a;
@@ -79,7 +85,7 @@ impl<'a> Ground<'a> {
                 nearest = nearest.min(along);
             }
         }
-        if nearest.is_finite() { nearest } else { 0.0 }
+        nearest.is_finite().then_some(nearest)
     }
 
     /// Distance of the margin without its teeth, and its direction towards the apex there.

@@ -21,6 +21,8 @@ mod curve;
 mod ends;
 mod fan;
 mod ground;
+mod intersecondary;
+mod lobes;
 mod matching;
 mod planter;
 mod primary;
@@ -120,8 +122,8 @@ parameters! {
         primary: choice(PrimaryType, PrimaryType::None),
         /// Veins at the base: with the midrib for palmate types, in all for parallel and fan ones.
         primary_count: count(5, 1..=61, "veins"),
-        /// Angle between the midrib and the outermost primary.
-        primary_angle_deg: number(75.0, 5.0..=170.0, "deg"),
+        /// Angle between the midrib and the outermost primary; 180 for rays all round.
+        primary_angle_deg: number(75.0, 5.0..=180.0, "deg"),
         /// How far up the midrib the other primaries begin.
         primary_origin: number(0.0, 0.0..=0.4, "lengths"),
         /// Neighbouring veins of a fan fork until they are this close at the margin.

@@ -38,6 +38,10 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) ->
     let root = planter.root(PRIMARY);
     let mut primaries = Primaries { midrib: None, laterals: Vec::new(), secondaries_from: 0.0 };
     if spec.primary == PrimaryType::Flabellate {
+        // All round a petiole one ray runs to the apex and does not fork.
+        if planter.ground.margin().is_peltate() {
+            planter.lay(root, &planter.ground.axis(), PRIMARY, 0.0);
+        }
         fan::lay(spec, planter, root, rng);
         return primaries;
     }
@@ -98,6 +102,8 @@ fn palmate(
                     _ => course.along_margin(ground, spec.reach.max(0.88), 0.4),
                 }
             } else {
+                // Drawn all the same: what comes after must not hang on how many lobes there are.
+                curve::wavering(&[], 0.0, rng);
                 continue;
             };
             let amplitude = 0.5 * spec.irregularity * WANDER * curve::length(&line);
@@ -111,18 +117,23 @@ fn palmate(
     primaries.secondaries_from = spec.primary_origin;
 }
 
+/// How far the ways into a lobe that are tried bow away from the midrib (degrees).
+const BOWS_DEG: [f64; 4] = [6.0, 2.0, -2.0, -6.0];
+
 /// From the base into the tip of a lobe: a slight bow, or round the sinus where that is cut off.
-fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
+pub(super) fn into_lobe(planter: &Planter<'_>, from: DVec2, side: f64, tip: DVec2) -> Vec<DVec2> {
     let chord = tip - from;
-    let bow = curve::cubic(
-        [from, from + turned(chord, 6.0, side) * 0.35, from + turned(chord, 1.0, side) * 0.7, tip],
-        60,
-    );
-    let inner = &bow[1..bow.len() - 2];
-    if inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1])) {
-        return bow;
-    }
-    planter.ground.route(from, tip).unwrap_or(bow)
+    let bow = |degrees: f64| {
+        let leave = from + turned(chord, degrees, side) * 0.35;
+        let arrive = from + turned(chord, degrees / 6.0, side) * 0.7;
+        curve::cubic([from, leave, arrive, tip], 60)
+    };
+    let is_free = |bow: &Vec<DVec2>| {
+        let inner = &bow[1..bow.len() - 2];
+        inner.windows(2).all(|w| planter.ground.is_free(w[0], w[1]))
+    };
+    let found = BOWS_DEG.into_iter().map(bow).find(is_free);
+    found.or_else(|| planter.ground.route(from, tip)).unwrap_or_else(|| bow(BOWS_DEG[0]))
 }
 
 /// Half the width of the blade on one side of a midrib, at 64 places from base to apex, evened.

@@ -5,13 +5,15 @@ use glam::DVec2;
 use super::course::{Course, decurrent};
 use super::curve;
 use super::ends::{arch_to, branch_to, festoon, fork};
+use super::intersecondary;
+use super::lobes;
 use super::matching::teeth_for;
 use super::planter::{Planter, Vein};
 use super::primary::{Lateral, Primaries};
 use super::rim::Rim;
 use super::targets::{self, Tip};
 use super::tertiary::{self, Bearer};
-use super::{GuideSpec, INTERSECONDARY, PrimaryType, RimType, SECONDARY, SecondaryType};
+use super::{GuideSpec, PrimaryType, RimType, SECONDARY, SecondaryType};
 use crate::seed::Rng;
 
 /// A secondary of full irregularity leaves at up to so many degrees more or less.
@@ -30,12 +32,14 @@ pub(super) struct Plan {
     /// Where it leaves, as a share of its parent vein.
     pub(super) share: f64,
     pub(super) side: f64,
-    angle_deg: f64,
-    curvature: f64,
+    pub(super) angle_deg: f64,
+    pub(super) curvature: f64,
     /// To the next on its side (mm).
     pub(super) spacing: f64,
     /// −1 – 1, for what else varies.
     pub(super) sway: f64,
+    /// The lobe that it is the vein of.
+    pub(super) lobe: Option<Tip>,
 }
 
 impl Plan {
@@ -70,7 +74,12 @@ pub(super) fn lay(
     if spec.secondary != SecondaryType::None {
         let ground = planter.ground;
         let first = spec.first_at.max(primaries.secondaries_from).min(spec.last_at - 1e-3);
-        let count = spec.secondary_count as usize;
+        let lobed = match spec.primary {
+            PrimaryType::Pinnate => targets::known_lobes(ground.margin()),
+            _ => Vec::new(),
+        };
+        let on = |side: f64| lobed.iter().filter(|tip| tip.side == side).count();
+        let count = (spec.secondary_count as usize).max(on(1.0)).max(on(-1.0));
         let between = (spec.last_at - first) / count.max(1) as f64 * midrib.length();
         let reaches_margin = !matches!(
             spec.secondary,
@@ -85,7 +94,7 @@ pub(super) fn lay(
             Vec::new()
         };
         let mut row = Row { spec, teeth, taken: Vec::new(), bearers: Vec::new(), rim: &mut rim };
-        row.both_sides(planter, midrib, count, (first, spec.last_at), rng);
+        row.both_sides(planter, midrib, count, (first, spec.last_at), &lobed, rng);
         let palmate =
             matches!(spec.primary, PrimaryType::Actinodromous | PrimaryType::Palinactinodromous);
         if palmate {
@@ -151,6 +160,7 @@ impl Row<'_> {
         midrib: &Vein,
         count: usize,
         range: (f64, f64),
+        lobed: &[Tip],
         rng: &mut Rng,
     ) {
         let spec = self.spec;
@@ -175,17 +185,33 @@ impl Row<'_> {
                     curvature: spec.curvature + 0.25 * mixed[2],
                     spacing: spacing * midrib.length(),
                     sway: mixed[3],
+                    lobe: None,
                 }
             }));
         }
         let tips = [0, 1].map(|s| {
-            let side: Vec<Plan> = plans.iter().map(|pair| pair[s]).collect();
+            let mut side: Vec<Plan> = plans.iter().map(|pair| pair[s]).collect();
+            lobes::assign(&mut side, [1.0, -1.0][s], lobed, midrib);
+            plans.iter_mut().zip(&side).for_each(|(pair, plan)| pair[s] = *plan);
             teeth_for(spec, planter, midrib, &side, &self.free_teeth())
         });
+        // The veins of lobes first: nothing may stand in their way.
+        let mut of_lobes: Vec<[Option<Laid>; 2]> = plans
+            .iter()
+            .map(|pair| {
+                pair.map(|plan| {
+                    plan.lobe.and_then(|_| self.secondary(planter, midrib, &plan, None, None))
+                })
+            })
+            .collect();
         // From the apex down, so that arches find the one above.
         let mut above: [Option<Laid>; 2] = [None, None];
         for (k, pair) in plans.iter().enumerate().rev() {
             for (s, plan) in pair.iter().enumerate() {
+                if plan.lobe.is_some() {
+                    above[s] = of_lobes[k][s].take().or(above[s].take());
+                    continue;
+                }
                 if self.is_between_teeth(&tips[s], k) {
                     continue;
                 }
@@ -197,7 +223,7 @@ impl Row<'_> {
         }
         for pairs in plans.windows(2) {
             for (lower, upper) in pairs[0].iter().zip(&pairs[1]) {
-                self.intersecondaries(planter, midrib, lower, upper, rng);
+                intersecondary::lay(self.spec, planter, midrib, lower, upper, rng);
             }
         }
     }
@@ -226,6 +252,7 @@ impl Row<'_> {
                     curvature: spec.curvature + 0.25 * own[2],
                     spacing: (spacing * lateral.vein.length()).min(between),
                     sway: own[3],
+                    lobe: None,
                 }
             };
             let plans: Vec<Plan> = self.places(count, range).into_iter().map(&mut plan).collect();
@@ -253,8 +280,11 @@ impl Row<'_> {
         let spec = self.spec;
         let course = |share: f64| plan.course(parent, share);
         let mut share = plan.share.clamp(0.01, 0.99);
-        let mut full = course(share).to_margin(ground);
-        if let Some(tip) = tip {
+        let mut full = match plan.lobe {
+            Some(lobe) => lobes::course(planter, parent, plan, lobe.at),
+            None => course(share).to_margin(ground),
+        };
+        if let (Some(tip), None) = (tip, plan.lobe) {
             // Leave so as to keep the angle, then turn the rest of the way.
             let (_, _, ahead) = parent.at(share);
             let shift = (tip.at - full[full.len() - 1]).dot(ahead) / parent.length();
@@ -266,6 +296,7 @@ impl Row<'_> {
         let line = match (spec.rim, spec.secondary) {
             (RimType::Intramarginal, _) => self.rim.cut(&full, plan.side),
             (_, SecondaryType::Craspedodromous) => full.clone(),
+            _ if plan.lobe.is_some() => full.clone(),
             (_, SecondaryType::Eucamptodromous) => {
                 course(share).along_margin(ground, spec.reach, 0.45)
             }
@@ -275,7 +306,8 @@ impl Row<'_> {
             _ if above.is_none() => course(share).along_margin(ground, spec.reach, 0.3),
             _ => curve::beginning(&full, spec.reach * (1.0 + 0.1 * plan.sway)),
         };
-        let craspedodromous = spec.secondary == SecondaryType::Craspedodromous;
+        let craspedodromous =
+            spec.secondary == SecondaryType::Craspedodromous || plan.lobe.is_some();
         let crosses = matches!(
             spec.primary,
             PrimaryType::Acrodromous | PrimaryType::Campylodromous | PrimaryType::Parallelodromous
@@ -293,6 +325,9 @@ impl Row<'_> {
         if spec.rim == RimType::Intramarginal || (spec.rim == RimType::Marginal && craspedodromous)
         {
             self.rim.landed(&vein, plan.side);
+            return Some(Laid { vein, arch: None });
+        }
+        if plan.lobe.is_some() {
             return Some(Laid { vein, arch: None });
         }
         let arch = match spec.secondary {
@@ -364,35 +399,6 @@ impl Row<'_> {
         tips[k].is_none()
             && self.spec.secondary == SecondaryType::Craspedodromous
             && !self.teeth.iter().any(between)
-    }
-
-    fn intersecondaries(
-        &self,
-        planter: &mut Planter<'_>,
-        midrib: &Vein,
-        lower: &Plan,
-        upper: &Plan,
-        rng: &mut Rng,
-    ) {
-        let spec = self.spec;
-        let [a, b, c] = [rng.unit(), rng.unit(), rng.unit()];
-        let count = (spec.intersecondary_count + a).floor() as usize;
-        for i in 0..count {
-            let part =
-                (i as f64 + 1.0) / (count as f64 + 1.0) + 0.15 * spec.irregularity * (b - 0.5);
-            let share = lower.share + (upper.share - lower.share) * part;
-            let (node, from, ahead) = midrib.at(share);
-            let course = Course {
-                from,
-                ahead,
-                side: lower.side,
-                angle_deg: 0.5 * (lower.angle_deg + upper.angle_deg) + 4.0 * (c - 0.5),
-                curvature: lower.curvature,
-            };
-            let length = spec.intersecondary_length * (0.75 + 0.5 * b);
-            let line = course.part_way(planter.ground, length);
-            planter.lay(node, &line, INTERSECONDARY, 0.4);
-        }
     }
 }
 

@@ -33,6 +33,8 @@ pub(super) struct Tip {
     pub(super) height: f64,
     /// 1 right, −1 left.
     pub(super) side: f64,
+    /// Where its vein begins, of the tip of a lobe whose maker knows.
+    pub(super) origin: Option<DVec2>,
 }
 
 /// A closed line of even steps, smoothed over `sigma` steps on either side.
@@ -55,7 +57,8 @@ pub(super) fn evened(line: &[DVec2], sigma: f64) -> Vec<DVec2> {
 /// two secondaries at the margin (mm).
 pub(super) fn teeth(margin: &Margin, spacing: f64) -> Vec<Tip> {
     let known = known_teeth(margin);
-    if !known.is_empty() {
+    // Whoever put lobes there would know of teeth on them.
+    if !known.is_empty() || !known_lobes(margin).is_empty() {
         return known;
     }
     let fine = FINE * margin.length_mm();
@@ -123,7 +126,7 @@ impl<'a> Ways<'a> {
         } else {
             (-1.0, (round - way) / (round - apex))
         };
-        Tip { at: outline[vertex], along, height, side }
+        Tip { at: outline[vertex], along, height, side, origin: None }
     }
 }
 
@@ -172,15 +175,20 @@ pub(super) fn lobes(margin: &Margin) -> Vec<Tip> {
 
 /// The tips of the lobes that the maker of a margin put there, without the one at the apex, from apex
 /// to base on each side.
-fn known_lobes(margin: &Margin) -> Vec<Tip> {
+pub(super) fn known_lobes(margin: &Margin) -> Vec<Tip> {
     let near_apex = 0.02 * margin.length_mm();
     let ways = Ways::new(margin);
     let mut tips: Vec<Tip> = margin
         .landmarks()
         .iter()
-        .filter(|mark| matches!(mark.kind, LandmarkKind::LobeTip { .. }))
         .filter(|mark| margin.outline()[mark.vertex].distance(margin.apex()) > near_apex)
-        .map(|mark| ways.tip(mark.vertex, LOBE * margin.length_mm()))
+        .filter_map(|mark| match mark.kind {
+            LandmarkKind::LobeTip { origin } => {
+                let tip = ways.tip(mark.vertex, LOBE * margin.length_mm());
+                Some(Tip { origin: Some(origin), ..tip })
+            }
+            _ => None,
+        })
         .collect();
     tips.sort_by(|a, b| (b.side, b.along).partial_cmp(&(a.side, a.along)).expect("finite"));
     tips
@@ -245,7 +253,7 @@ impl Places {
         } else {
             (-1.0, (self.count - i) as f64 / (self.count - self.apex) as f64)
         };
-        Tip { at, along, height, side }
+        Tip { at, along, height, side, origin: None }
     }
 }
 

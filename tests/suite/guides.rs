@@ -18,7 +18,7 @@ fn grown(spec: &LeafSpec, seed: u64) -> (GrowingBlade, Venation) {
 
 #[test]
 fn presets_keep_what_venation_promises_whatever_the_growth() {
-    for preset in PRESETS {
+    for (index, preset) in PRESETS.iter().enumerate() {
         for (seed, &growth) in GrowthType::ALL.iter().enumerate() {
             let seed = seed as u64;
             let document = preset.document().expect("it parses");
@@ -27,14 +27,17 @@ fn presets_keep_what_venation_promises_whatever_the_growth() {
             spec.veins.spawn_rate = 40.0;
             // Bows draw edges out.
             spec.veins.sinuosity = 0.0;
+            spec.veins.relaxation = spec.veins.relaxation.min(2);
             if growth == GrowthType::Marginal {
                 spec.growth.scale = 0.8;
             }
             let name = format!("{} {growth} {seed}", preset.name);
             let (blade, venation) = grown(&spec, seed);
             assert_eq!(venation.check(blade.finished()), None, "{name}");
-            let (_, again) = grown(&spec, seed);
-            assert_eq!(venation, again, "{name}");
+            if index % GrowthType::ALL.len() == seed as usize {
+                let (_, again) = grown(&spec, seed);
+                assert_eq!(venation, again, "{name}");
+            }
             let longest = 1.5 * 1.2 * spec.veins.node_step_mm;
             let at = |node: NodeId| venation.graph().positions()[node as usize];
             for (a, b) in venation.graph().edges() {

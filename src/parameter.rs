@@ -62,6 +62,37 @@ pub trait Parameters {
 
     /// The default of every knob, as a tree by the parts of their keys.
     fn defaults() -> toml::Table;
+
+    /// The first number or count that is outside its limits (or no number), in the order of the
+    /// knobs. Documents are checked as they are read; this is for settings that a program made.
+    fn outside_limits(&self) -> Option<OutsideLimits>;
+}
+
+/// A setting outside its limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutsideLimits {
+    /// Its key, relative to the group that was asked.
+    pub key: String,
+    /// Its value.
+    pub value: f64,
+    /// The least it may be.
+    pub min: f64,
+    /// The most it may be.
+    pub max: f64,
+}
+
+impl OutsideLimits {
+    /// What is wrong, to stand after `KEY = VALUE`.
+    #[must_use]
+    pub fn problem(&self) -> String {
+        format!("must be from {} to {}", self.min, self.max)
+    }
+
+    /// The same seen from the group above.
+    pub(crate) fn within(mut self, group: &str) -> Self {
+        self.key = format!("{group}.{}", self.key);
+        self
+    }
 }
 
 /// A word of a list, as a parameter.
@@ -146,6 +177,18 @@ macro_rules! parameters {
                     $crate::parameter::field_defaults!(tree, key, $kind $arguments);
                 } )*
                 tree
+            }
+
+            fn outside_limits(&self) -> Option<$crate::parameter::OutsideLimits> {
+                $( {
+                    let key = stringify!($field).trim_start_matches("r#");
+                    let outside =
+                        $crate::parameter::field_outside!(self.$field, key, $kind $arguments);
+                    if outside.is_some() {
+                        return outside;
+                    }
+                } )*
+                None
             }
         }
     };
@@ -260,6 +303,38 @@ macro_rules! field_kind {
     };
 }
 
+/// What is outside its limits in a field of [`parameters!`].
+macro_rules! field_outside {
+    (@in $value:expr, $key:ident, $limits:expr) => {{
+        let limits = $limits;
+        (!limits.contains(&$value)).then(|| $crate::parameter::OutsideLimits {
+            key: $key.to_owned(),
+            value: $value as f64,
+            min: *limits.start() as f64,
+            max: *limits.end() as f64,
+        })
+    }};
+    ($value:expr, $key:ident, number ($default:expr, $limits:expr, $unit:expr)) => {
+        $crate::parameter::field_outside!(@in $value, $key, $limits)
+    };
+    ($value:expr, $key:ident, count ($default:expr, $limits:expr, $unit:expr)) => {
+        $crate::parameter::field_outside!(@in $value, $key, $limits)
+    };
+    ($value:expr, $key:ident, group $arguments:tt) => {
+        $crate::parameter::Parameters::outside_limits(&$value).map(|outside| outside.within($key))
+    };
+    ($value:expr, $key:ident, records $arguments:tt) => {
+        $value.iter().enumerate().find_map(|(i, record)| {
+            let outside = $crate::parameter::Parameters::outside_limits(record)?;
+            Some(outside.within(&(i + 1).to_string()).within($key))
+        })
+    };
+    ($value:expr, $key:ident, $kind:ident $arguments:tt) => {{
+        let _ = $key;
+        None::<$crate::parameter::OutsideLimits>
+    }};
+}
+
 /// Declares an enum of plain words: serde in kebab-case, [`Choice`], `Display` and `FromStr`.
 macro_rules! words {
     (
@@ -294,5 +369,6 @@ macro_rules! words {
 }
 
 pub(crate) use {
-    field_default, field_defaults, field_kind, field_parameters, field_type, parameters, words,
+    field_default, field_defaults, field_kind, field_outside, field_parameters, field_type,
+    parameters, words,
 };

@@ -253,6 +253,10 @@ fn golden_growth_types() {
                 "growth.start_step=200",
                 "veins.guides.primary=none",
                 "veins.algorithm=auxin-open",
+                // From the base to the apex in the steps there are.
+                "veins.longest_step=0",
+                "veins.node_step_mm=0.65",
+                "veins.kill_distance_mm=0.35",
             ];
             let leaf = leaf(&document("lilac", &settings), 1, 512);
             panel(leaf.textures.back.base_colour, growth.word())

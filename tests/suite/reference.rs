@@ -347,6 +347,9 @@ pub(crate) fn grow(
     // Where tissue stands still, a dart keeps its room for ever.
     let thrown = waiting.clone();
     let mut sources: Vec<Source> = Vec::new();
+    let drain = (3.0 * spec.source_spawn_distance_mm / spec.node_step_mm).ceil() as usize;
+    let drain = drain.min(closing_steps / 4);
+    let mut rate = spec.spawn_rate;
     let mut fraction = 0.0;
     for (made, step) in blade.steps().take(most_steps).enumerate() {
         // Grow the blade and what is carried with it.
@@ -363,9 +366,11 @@ pub(crate) fn grow(
             // From here on veins end free, closer to each other.
             world.settle(&mut sources, false);
             world.closing = false;
+            // The last veins have few steps to come in.
+            rate *= 4.0;
             if !given && !darts_fall {
                 let mut spaced: Vec<DVec2> = thrown.clone();
-                let left = spec.spawn_rate * (steps - closing_steps) as f64;
+                let left = rate * (steps - closing_steps) as f64;
                 world.throw_at_once(left, &scatter, rng, &mut spaced);
                 waiting.extend(&spaced[thrown.len()..]);
             }
@@ -377,8 +382,10 @@ pub(crate) fn grow(
         // They call in an order, and are born in that of place.
         born.sort_by_key(|&p| z_order(blade.mature().bounds(), p));
         sources.extend(born.into_iter().map(|p| Source::new(world.shown(p))));
-        if darts_fall {
-            fraction += spec.spawn_rate * blade.greatest_area_scale(step);
+        // Before the veins that end free, those on their way meet.
+        let rests = world.closing && closing_steps < steps && made + drain >= closing_steps;
+        if darts_fall && !rests {
+            fraction += rate * blade.greatest_area_scale(step);
             while fraction >= 1.0 {
                 let (thrown, places) = world.darts(&scatter, rng);
                 fraction -= thrown as f64;

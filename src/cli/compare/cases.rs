@@ -83,8 +83,8 @@ impl Emergence {
             spec.growth.r#type = GrowthType::NonUniform;
             spec.growth.rates.pattern = RatePattern::Basipetal;
         }
+        alone(spec)?;
         let veins = &mut spec.veins;
-        veins.guides.primary = PrimaryType::None;
         let or = |value: f64, default: f64| if value == 0.0 { default } else { value };
         veins.straightness =
             if has(Self::Straight) { or(veins.straightness, STRAIGHTNESS) } else { 0.0 };
@@ -100,6 +100,22 @@ impl Emergence {
         Ok(())
     }
 }
+
+/// Leaves the veins to growth, as in the papers. With no midrib to start from, they must cross the
+/// whole blade in the steps there are.
+fn alone(spec: &mut LeafSpec) -> Result<(), Error> {
+    let length = margin::build(&spec.margin, Seed(0))?.length_mm();
+    let steps = spec.growth.total_steps.saturating_sub(spec.growth.start_step).max(1) as f64;
+    let veins = &mut spec.veins;
+    veins.guides.primary = PrimaryType::None;
+    veins.longest_step = 0.0;
+    veins.node_step_mm = veins.node_step_mm.max(CROSSINGS * length / steps);
+    veins.kill_distance_mm = veins.kill_distance_mm.max(veins.node_step_mm / 2.0);
+    Ok(())
+}
+
+/// How often a vein could go from base to apex: it has turns to make, and sources to wait for.
+const CROSSINGS: f64 = 1.6;
 
 /// What `--by emergence` takes where a leaf says nothing: veins as straight and as alike on both sides
 /// as most leaves', eight times as far apart at first.
@@ -192,7 +208,12 @@ impl Case {
     /// Makes a leaf the one of this case.
     pub(super) fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
         match self {
-            Self::Growth(growth) => spec.growth.r#type = growth,
+            Self::Growth(growth) => {
+                spec.growth.r#type = growth;
+                if spec.veins.guides.primary == PrimaryType::None {
+                    alone(spec)?;
+                }
+            }
             Self::Algorithm(algorithm) => spec.veins.algorithm = algorithm,
             Self::Seed => {}
             Self::Shape(index) => {

@@ -55,7 +55,6 @@ pub(super) struct Sources {
     free_tags: Vec<u32>,
     /// Sources to which a node has come within the kill distance, and those that wait.
     reached: Vec<u32>,
-    step_mm: f64,
     deforms: bool,
     /// Distances may shrink, too: every source is looked after in every step.
     warps: bool,
@@ -71,7 +70,6 @@ impl Sources {
             tags: Vec::new(),
             free_tags: Vec::new(),
             reached: Vec::new(),
-            step_mm: spec.node_step_mm,
             deforms: blade.deforms(),
             warps: blade.is_warped(),
             convex: blade.is_convex(),

@@ -43,6 +43,8 @@ pub(super) struct Nodes {
     /// Cells of about the spacing of sources: what is nearest to a source.
     far: PointGrid,
     step_mm: f64,
+    /// In the mature leaf; infinite without a limit.
+    longest_step_mm: f64,
     far_cell_mm: f64,
     least_loop_mm: f64,
     web: Web,
@@ -72,6 +74,10 @@ impl Nodes {
             near: PointGrid::new(bounds, cell(step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
+            longest_step_mm: match spec.longest_step {
+                0.0 => f64::INFINITY,
+                steps => steps * step_mm,
+            },
             far_cell_mm,
             least_loop_mm: spec.least_loop * spec.kill_distance_mm,
             web,
@@ -113,6 +119,11 @@ impl Nodes {
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element());
         let cell = metric.reach(metric.length(self.step_mm)).max_element();
         self.web.refine(cell, self.graph.positions());
+    }
+
+    /// How far a vein grows in a step.
+    pub(super) fn stride(&self, metric: Metric) -> f64 {
+        metric.length(self.step_mm).min(self.longest_step_mm * metric.stretch.min_element())
     }
 
     /// How veins are steered from now on.
@@ -288,7 +299,7 @@ impl Nodes {
         metric: Metric,
     ) -> Sprout {
         let from = self.position(node);
-        let length = metric.length(self.step_mm);
+        let length = self.stride(metric);
         let child = metric.beyond(from, towards * length);
         let siblings = (LEAST_BETWEEN_CHILDREN * length) * (LEAST_BETWEEN_CHILDREN * length);
         let others = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);

@@ -15,10 +15,10 @@
 
 use glam::DVec2;
 
-use super::super::{VeinError, VeinSpec};
+use super::super::VeinSpec;
 use crate::geometry::segments::SegmentIndex;
 use crate::growth::GrowingBlade;
-use crate::parameter::{Kind, Parameters, parameters};
+use crate::parameter::parameters;
 use crate::seed::Rng;
 
 parameters! {
@@ -162,34 +162,6 @@ impl Density {
     pub(super) fn most(&self) -> f64 {
         self.most
     }
-}
-
-/// Refuses numbers outside their limits.
-pub(in crate::veins) fn check(spec: &VeinSpec) -> Result<(), VeinError> {
-    let values = [
-        ("phases.coarseness", spec.phases.coarseness),
-        ("phases.settle_at", spec.phases.settle_at),
-        ("density.margin", spec.density.margin),
-        ("density.midrib", spec.density.midrib),
-        ("density.width", spec.density.width),
-        ("convergence.spacing_mm", spec.convergence.spacing_mm),
-        ("convergence.until", spec.convergence.until),
-        ("convergence.angle_deg", spec.convergence.angle_deg),
-        ("convergence.bend_deg", spec.convergence.bend_deg),
-        ("convergence.jitter", spec.convergence.jitter),
-        ("convergence.tooth_reach", spec.convergence.tooth_reach),
-    ];
-    for parameter in VeinSpec::parameters() {
-        let Some((_, value)) = values.iter().find(|(key, _)| *key == parameter.key) else {
-            continue;
-        };
-        let Kind::Number { min, max, .. } = parameter.kind else { continue };
-        if !(min..=max).contains(value) {
-            let key = format!("veins.{}", parameter.key);
-            return Err(VeinError::setting(key, *value, format!("must be from {min} to {max}")));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

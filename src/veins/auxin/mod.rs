@@ -36,7 +36,6 @@ use convergence::Convergence;
 pub use convergence::ConvergenceSpec;
 use extend::{Meeting, Nodes};
 use habit::Steering;
-pub(super) use habit::check;
 pub use habit::{DensitySpec, PhaseSpec};
 use sources::Supply;
 
@@ -63,6 +62,10 @@ pub struct Grown {
 /// million.
 const MAX_NODES: usize = 10_000_000;
 
+/// Veins get this many distances between sources far from the last closing source to the first of
+/// the veinlets.
+const DRAIN: f64 = 3.0;
+
 /// How many nodes the blade can hold before they stand closer than a quarter of a step everywhere,
 /// as children of one node never do. Without this limit a shower of darts with no least distances
 /// lets veins double in every step, until millions of nodes stand in one place.
@@ -88,6 +91,10 @@ pub fn grow(
     let is_closed = spec.algorithm == Algorithm::AuxinClosed;
     let closing_steps =
         if is_closed { (spec.closing_share * steps as f64).round() as u64 } else { steps };
+    // Before the last veins, which end free, those on their way meet: else they would end a hair before
+    // each other.
+    let drain = (DRAIN * spec.source_spawn_distance_mm / spec.node_step_mm).ceil() as u64;
+    let drain = drain.min(closing_steps / 4);
     let mut supply = Supply::new(spec, blade, closing_steps)?;
     let first = *blade.steps().start();
     let meeting = if is_closed { Meeting::Join } else { Meeting::Stop };
@@ -123,6 +130,9 @@ pub fn grow(
             made += 1;
             nodes_after_step.push(nodes.len() as u32);
             continue;
+        }
+        if is_closed && closing_steps < steps && made + drain >= closing_steps && is_closing {
+            supply.rest();
         }
         if let Some(sources) = closed.take_if(|_| !is_closing) {
             open = end_free(sources, spec, blade, step, &mut nodes, &mut supply);

@@ -20,6 +20,10 @@ const MAX_DARTS: f64 = 3e7;
 /// hundred megabytes.
 const MAX_SOURCES: usize = 4_000_000;
 
+/// The last veinlets have few steps to come in: so many times more darts fall then, or large areoles
+/// would stay empty by chance.
+const VEINLET_DARTS: f64 = 4.0;
+
 /// The sources still to come.
 pub(super) struct Supply<'a> {
     spec: &'a VeinSpec,
@@ -33,6 +37,8 @@ pub(super) struct Supply<'a> {
     /// Whether darts fall in every step, not all at once before the first.
     falls: bool,
     is_paced: bool,
+    /// Whether nothing falls for the time being.
+    rests: bool,
     scatter: PolygonScatter,
     /// Living sources, for their spacing; only where darts fall.
     spaced: PointGrid,
@@ -80,6 +86,7 @@ impl<'a> Supply<'a> {
             density,
             falls: !given && (blade.carries_tissue() || is_paced),
             is_paced,
+            rests: false,
             scatter: PolygonScatter::new(blade.mature().outline()),
             spaced: PointGrid::new(blade.mature().bounds(), cell),
             fraction: 0.0,
@@ -154,7 +161,7 @@ impl<'a> Supply<'a> {
             self.waiting.pop();
             calls.add(p, nodes, metric);
         }
-        if self.falls && !self.waits(age) {
+        if self.falls && !self.rests && !self.waits(age) {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();
             self.spaced.refine(cell);
             // As many as would fall on the whole leaf if all of it were as large as its largest part;
@@ -243,9 +250,16 @@ impl<'a> Supply<'a> {
     pub(super) fn crowd(&mut self, share: f64, volley_steps: u64) {
         self.spacing_mm *= share;
         self.vein_spacing_mm *= share;
+        self.rate *= VEINLET_DARTS;
         self.volley = (self.rate * volley_steps as f64) as u64;
+        self.rests = false;
         self.waiting.reverse();
         self.is_sorted = false;
+    }
+
+    /// From now on nothing falls, until [`crowd`](Self::crowd).
+    pub(super) fn rest(&mut self) {
+        self.rests = true;
     }
 
     /// Makes room where sources died.

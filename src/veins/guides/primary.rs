@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::course::Course;
 use super::curve::{self, smoothstep, turned};
 use super::planter::{Planter, Vein};
-use super::{GuideSpec, PRIMARY, PrimaryType, SecondaryType, targets};
+use super::{GuideSpec, PRIMARY, PrimaryType, SecondaryType, fan, targets};
 use crate::seed::Rng;
 
 /// The most that a midrib of full irregularity strays, in lengths of the blade.
@@ -42,7 +42,7 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) ->
         if planter.ground.margin().is_peltate() {
             planter.lay(root, &planter.ground.axis(), PRIMARY, 0.0);
         }
-        fan(spec, planter, root, rng);
+        fan::lay(spec, planter, root, rng);
         return primaries;
     }
     let axis = planter.ground.axis();
@@ -234,112 +234,4 @@ fn recurved(
     let mut whole = curve::cubic(bow, 60);
     whole.extend(&line[meet + 1..]);
     whole
-}
-
-/// A vein of a fan: it serves the places `first..last` on the margin.
-struct Ray {
-    from: u32,
-    ahead: DVec2,
-    first: usize,
-    last: usize,
-}
-
-/// Veins that fork until they stand close enough at the margin.
-fn fan(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
-    let ground = planter.ground;
-    let base = ground.root();
-    // The part of the margin that the veins reach: what is seen from the base within the angle.
-    let line = crate::geometry::polygon::resampled(
-        ground.margin().outline(),
-        0.25 * spec.fork_spacing_mm.min(ground.length() / 8.0),
-    );
-    let within = |p: &&DVec2| {
-        let angle = (**p - base).angle_to(DVec2::Y).abs().to_degrees();
-        angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(**p, 0.97))
-    };
-    if ground.margin().is_peltate() {
-        // Both sides of the ray to the apex.
-        let tip = ground.margin().apex();
-        let apex = (0..line.len())
-            .min_by(|&i, &j| {
-                line[i].distance_squared(tip).total_cmp(&line[j].distance_squared(tip))
-            })
-            .unwrap_or(0);
-        let basal = (spec.primary_count.saturating_sub(1) / 2) as usize;
-        for side in [&line[..=apex], &line[apex..]] {
-            let arc: Vec<DVec2> = side.iter().filter(within).copied().collect();
-            rays(spec, planter, root, &arc, basal, rng);
-        }
-    } else {
-        let arc: Vec<DVec2> = line.iter().filter(within).copied().collect();
-        rays(spec, planter, root, &arc, spec.primary_count as usize, rng);
-    }
-}
-
-/// The veins of a fan over a part of the margin, of which `basal` leave the base.
-fn rays(
-    spec: &GuideSpec,
-    planter: &mut Planter<'_>,
-    root: u32,
-    arc: &[DVec2],
-    basal: usize,
-    rng: &mut Rng,
-) {
-    let base = planter.ground.root();
-    let count = (curve::length(arc) / spec.fork_spacing_mm).ceil().clamp(1.0, 400.0) as usize;
-    if arc.len() < 2 {
-        return;
-    }
-    let ends: Vec<DVec2> = (0..count)
-        .map(|i| {
-            let jitter = 0.5 * spec.irregularity * rng.between(-0.5, 0.5);
-            curve::at(arc, (i as f64 + 0.5 + jitter) / count as f64).0
-        })
-        .collect();
-    let basal = basal.clamp(1, count);
-    let mut open: Vec<Ray> = (0..basal)
-        .map(|i| {
-            let (first, last) = (i * count / basal, (i + 1) * count / basal);
-            Ray { from: root, ahead: DVec2::ZERO, first, last }
-        })
-        .collect();
-    while let Some(ray) = open.pop() {
-        let served = ray.last - ray.first;
-        if served == 0 {
-            continue;
-        }
-        let from = planter.graph.positions()[ray.from as usize];
-        let middle = {
-            let (a, b) = (ends[ray.first + (served - 1) / 2], ends[ray.first + served / 2]);
-            a.lerp(b, 0.5)
-        };
-        // Where there is room for two it forks: sooner the more places it serves.
-        let share = if served == 1 {
-            1.0
-        } else {
-            let even = 1.5 / served as f64;
-            (even * (1.0 + 0.8 * spec.irregularity * rng.between(-1.0, 1.0))).min(0.85)
-        };
-        let to = base.lerp(middle, share);
-        let chord = from.distance(to);
-        let towards = (to - from).normalize_or_zero();
-        let start = if ray.ahead == DVec2::ZERO { towards } else { ray.ahead };
-        let leave = (start + towards * 1.5).normalize_or(towards);
-        let arrive = (middle - base).normalize_or(towards);
-        let bow = [from, from + leave * (0.35 * chord), to - arrive * (0.35 * chord), to];
-        let behind =
-            (to - from).dot(middle - base) <= 2.5 * planter.step * (middle - base).length();
-        let end = if behind && served > 1 {
-            Some((ray.from, ray.ahead))
-        } else {
-            planter.lay(ray.from, &curve::cubic(bow, 40), PRIMARY, 0.0).map(|vein| {
-                let (node, _, ahead) = vein.end();
-                (node, ahead)
-            })
-        };
-        let (Some((from, ahead)), true) = (end, served > 1) else { continue };
-        let half = ray.first + served / 2;
-        open.push(Ray { from, ahead, first: ray.first, last: half });
-        open.push(Ray { from, ahead, first: half, last: ray.last });
-    }
 }

@@ -100,12 +100,29 @@ pub(super) fn lay(
         if palmate {
             for lateral in &primaries.laterals {
                 row.lateral(planter, lateral, between, rng);
+                let vein = lateral.vein.clone();
+                row.bearers.push(Bearer { vein, ahead: midrib.at(0.5).2 });
             }
         }
         bearers = row.bearers;
     }
     rim.lay(planter, primaries);
+    if spec.primary == PrimaryType::Parallelodromous {
+        bearers.extend(beside(midrib, primaries));
+    }
     tertiary::lay(spec, planter, &bearers, rng);
+}
+
+/// Parallel veins bear cross-veins, each to its neighbour on the outer side.
+fn beside(midrib: &Vein, primaries: &Primaries) -> Vec<Bearer> {
+    let ahead = midrib.at(0.5).2;
+    let bearer = |vein: &Vein, side: f64| Bearer {
+        vein: vein.clone(),
+        ahead: curve::turned(ahead, 90.0, side),
+    };
+    let inner = [1.0, -1.0].map(|side| bearer(midrib, side));
+    let others = primaries.laterals.iter().map(|lateral| bearer(&lateral.vein, lateral.side));
+    inner.into_iter().chain(others).collect()
 }
 
 /// Secondaries along one primary after the other.

@@ -13,7 +13,7 @@ use super::{GuideSpec, TERTIARY, TertiaryType};
 use crate::seed::Rng;
 
 /// A tertiary that finds no vein within so many of its spacings runs to the margin: none is laid.
-const LONGEST: f64 = 9.0;
+const LONGEST: f64 = 14.0;
 
 /// A rung leans by so many degrees at full irregularity.
 const LEAN: f64 = 30.0;

@@ -252,7 +252,10 @@ fn every_type_lays_veins() {
 
 #[test]
 fn a_number_out_of_its_limits_is_refused_with_its_key() {
-    let spec = GuideSpec { curvature: 7.0, ..pinnate(SecondaryType::None) };
-    let error = check(&spec).expect_err("too curved").to_string();
+    let guides = GuideSpec { curvature: 7.0, ..pinnate(SecondaryType::None) };
+    let spec = VeinSpec { guides, ..VeinSpec::default() };
+    let blade = GrowingBlade::new(oval(), &GrowthSpec::default()).expect("it grows");
+    let error = crate::veins::grow(&spec, &blade, Seed(1), &mut crate::observer::Silent);
+    let error = error.expect_err("too curved").to_string();
     assert!(error.contains("veins.guides.curvature = 7"), "{error}");
 }

@@ -23,6 +23,10 @@ const AT_MARGIN: f64 = 1.0;
 /// Scans across the blade on which the spacing of long veins is taken.
 const SCANS: usize = 40;
 
+/// Veins are counted on lines at these shares of the length of the blade, to tell fans from parallel
+/// veins.
+const FAR_APART: [f64; 2] = [0.25, 0.7];
+
 /// How the veins of a network run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Courses {
@@ -70,9 +74,13 @@ impl Courses {
         let axis = DVec2::new(libm::cos(turn), libm::sin(turn));
         let ends_at_margin = ends_at_margin(network);
         let is_open = (loops as f64) <= OPEN * network.segments().len() as f64;
-        let architecture = if alignment >= ALIGNED {
+        let lines = scans(network, &pieces, axis);
+        // A fan has more veins the farther out; parallel ones run side by side all the way.
+        let counts = FAR_APART.map(|share| lines[(share * SCANS as f64) as usize].len());
+        let fans_out = counts[0].max(counts[1]) > 2 * counts[0].min(counts[1]);
+        let architecture = if alignment >= ALIGNED && !(is_open && fans_out) {
             Architecture::Parallel
-        } else if is_open && ends_at_margin > Some(0.5) {
+        } else if is_open && (fans_out || ends_at_margin > Some(0.5)) {
             Architecture::Dichotomous
         } else {
             Architecture::Reticulate
@@ -92,7 +100,7 @@ impl Courses {
             ends_at_margin,
             fork_angle: median(&forks),
             spacing: (long > 0.0).then(|| network.blade_area() / long),
-            spacing_variation: spacing_variation(network, &pieces, axis),
+            spacing_variation: spacing_variation(&lines),
             cross_spacing: (crossing > 0).then(|| long / crossing as f64),
             architecture,
         }
@@ -112,8 +120,8 @@ fn ends_at_margin(network: &Network) -> Option<f64> {
     share(&ends, |&end| margin.nearest(network.nodes()[end], reach).is_some())
 }
 
-/// From lines across the blade, evenly along its axis; the mean over those that cross 3 veins or more.
-fn spacing_variation(network: &Network, pieces: &[[DVec2; 2]], axis: DVec2) -> Option<f64> {
+/// Where long veins cross lines across the blade, evenly along its axis; each line sorted.
+fn scans(network: &Network, pieces: &[[DVec2; 2]], axis: DVec2) -> Vec<Vec<f64>> {
     let heights = network.outline().iter().map(|p| p.dot(axis));
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| {
         (low.min(height), high.max(height))
@@ -132,10 +140,15 @@ fn spacing_variation(network: &Network, pieces: &[[DVec2; 2]], axis: DVec2) -> O
             crossings[i].push(axis.perp_dot(p));
         }
     }
-    let variations: Vec<f64> = crossings
-        .iter_mut()
+    crossings.iter_mut().for_each(|line| line.sort_by(f64::total_cmp));
+    crossings
+}
+
+/// The mean over the lines that cross 4 veins or more.
+fn spacing_variation(lines: &[Vec<f64>]) -> Option<f64> {
+    let variations: Vec<f64> = lines
+        .iter()
         .filter_map(|line| {
-            line.sort_by(f64::total_cmp);
             let gaps: Vec<f64> = line.windows(2).map(|pair| pair[1] - pair[0]).collect();
             if gaps.len() >= 3 { variation(&gaps) } else { None }
         })

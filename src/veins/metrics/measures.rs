@@ -147,7 +147,8 @@ impl Measures {
             "cross_vein_spacing" => courses.cross_spacing,
             "vla" => vla,
             "loop_index" => ratio(count(list.len()) * blade_area, length * length),
-            "mst_ratio" => ratio(topology.spanning_length, length),
+            // Of a tree all of it, whatever the order in which lengths were summed.
+            "mst_ratio" => ratio(topology.spanning_length, length).map(|share| share.min(1.0)),
             "meshedness" => topology.meshedness(),
             "edges_per_node" => ratio(count(topology.segments), count(topology.nodes)),
             "degree_3_share" => ratio(count(topology.degree_3), count(topology.junctions)),

@@ -201,8 +201,12 @@ fn a_forking_tree_has_no_loops_and_halves_its_streams() {
     let junctions = junctions(&network);
     assert_eq!(junctions.len(), 31);
     assert!(junctions.iter().all(|j| close(j.murray_exponent(), 3.0, 1e-6)));
-    let measures = Measures::by(&network, Unit::Millimetre, Some(Architecture::Reticulate));
-    assert!(measures.rows.iter().all(|row| row.number != 1 || !row.is_inside()));
+    let measures = Measures::of(&network, Unit::Millimetre);
+    assert_eq!(measures.architecture, Architecture::Dichotomous);
+    let row = |number: u32| measures.rows.iter().find(|row| row.number == number).unwrap();
+    assert!(row(1).is_inside() && row(2).is_inside(), "no loops, all of it a tree");
+    let netted = Measures::by(&network, Unit::Millimetre, Some(Architecture::Reticulate));
+    assert!(netted.rows.iter().all(|row| row.number != 1 || !row.is_inside()));
 }
 
 #[test]

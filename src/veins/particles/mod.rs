@@ -30,7 +30,7 @@ use crate::geometry::point_cells::PointCells;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 use crate::observer::{Observer, Progress};
-use crate::parameter::{Kind, Parameters, parameters, words};
+use crate::parameter::{parameters, words};
 use crate::seed::Rng;
 use patterns::Pattern;
 use steer::Steer;
@@ -338,25 +338,6 @@ struct Pair {
     b: u32,
     /// How often the two had merged when this was measured.
     after: u32,
-}
-
-/// Refuses settings out of their limits.
-pub(super) fn check(spec: &ParticleSpec) -> Result<(), VeinError> {
-    for parameter in ParticleSpec::parameters() {
-        let value = match parameter.key.as_str() {
-            "spacing_mm" => spec.spacing_mm,
-            "step_mm" => spec.step_mm,
-            "merge_radius_mm" => spec.merge_radius_mm,
-            "initial_energy" => spec.initial_energy,
-            _ => continue,
-        };
-        let Kind::Number { min, max, .. } = parameter.kind else { continue };
-        if !(min..=max).contains(&value) {
-            let key = format!("veins.particles.{}", parameter.key);
-            return Err(VeinError::setting(key, value, format!("must be from {min} to {max}")));
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

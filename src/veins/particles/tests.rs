@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::polygon;
 use crate::observer::Silent;
+use crate::parameter::Parameters;
 use crate::seed::{Seed, Stage};
 use crate::veins::widths;
 
@@ -310,5 +311,7 @@ fn settings_that_make_no_sense_are_refused_with_their_key() {
     assert!(message.starts_with("veins.particles.step_mm = 0.001"), "{message}");
     let message = refused(&ParticleSpec { spacing_mm: 900.0, ..spec.clone() });
     assert!(message.contains("no particle inside"), "{message}");
-    assert!(check(&ParticleSpec { merge_radius_mm: -1.0, ..spec }).is_err());
+    let spec = ParticleSpec { merge_radius_mm: -1.0, ..spec };
+    let outside = spec.outside_limits().expect("a radius below its limit");
+    assert_eq!((outside.key.as_str(), outside.value), ("merge_radius_mm", -1.0));
 }

@@ -9,6 +9,9 @@
 //! Roots, nodes beside the margin and guided veins of the first order stay. A move that would bring a
 //! vein across the margin or another vein is halved twice, then left out.
 
+mod faces;
+
+use faces::Faces;
 use glam::DVec2;
 
 use super::VeinSpec;
@@ -44,7 +47,7 @@ pub fn relaxed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph) -> VeinGraph 
         return graph;
     }
     let (radii, _) = widths::of_tree(spec, &graph, spec.tip_radius_mm);
-    let relaxation = Relaxation::new(&graph, &radii, margin.lines(), spec.node_step_mm);
+    let relaxation = Relaxation::new(&graph, &radii, margin.lines(), spec);
     let mut places = relaxation.run(spec.relaxation).into_iter();
     graph.mapped(|old| places.next().unwrap_or(old))
 }
@@ -60,28 +63,39 @@ struct Relaxation {
     margin: SegmentIndex,
     positions: Vec<DVec2>,
     step: f64,
+    faces: Option<Faces>,
+    /// How strongly faces press, in pulls of the mean vein.
+    pressure: f64,
 }
 
 impl Relaxation {
-    fn new(graph: &VeinGraph, radii: &[f64], margin: SegmentIndex, step: f64) -> Self {
+    fn new(graph: &VeinGraph, radii: &[f64], margin: SegmentIndex, spec: &VeinSpec) -> Self {
+        let step = spec.node_step_mm;
         let chains = Chains::of(graph);
         let positions = graph.positions().to_vec();
-        let pulls = chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
+        let pulls: Vec<f64> = chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
+        let mean_pull = pulls.iter().sum::<f64>() / pulls.len().max(1) as f64;
+        let pressure = spec.areole_pressure * mean_pull;
+        let faces = (pressure > 0.0).then(|| Faces::of(&chains, &positions));
+        let is_end: Vec<bool> = chains.at.iter().map(|at| at.len() == 1).collect();
         let is_pinned = |node: NodeId| {
             graph.parent(node).is_none()
-                || graph.rank(node).is_some_and(|rank| rank.order <= 1)
+                || graph.rank(node).is_some_and(|rank| rank.order <= 1 || is_end[node as usize])
                 || margin.nearest(positions[node as usize], step).is_some()
         };
         let pinned = (0..graph.len() as NodeId).map(is_pinned).collect();
         let joins = graph.joins().iter().copied();
         let edges = graph.edges().chain(joins).map(|(a, b)| [a, b]).collect();
-        Self { chains, pulls, pinned, edges, margin, positions, step }
+        Self { chains, pulls, pinned, edges, margin, positions, step, faces, pressure }
     }
 
     fn run(mut self, sweeps: u64) -> Vec<DVec2> {
         let free: Vec<NodeId> =
             self.chains.junctions().filter(|&node| !self.pinned[node as usize]).collect();
         for _ in 0..sweeps {
+            if let Some(faces) = &mut self.faces {
+                faces.measure(&self.chains, &self.positions);
+            }
             let at = |node: NodeId| self.positions[node as usize];
             let near = SegmentIndex::new(self.edges.iter().map(|&[a, b]| (at(a), at(b))).collect());
             for &junction in &free {
@@ -111,6 +125,9 @@ impl Relaxation {
             force += towards.normalize_or_zero() * pull;
             pulls += pull;
             ways.push(towards);
+        }
+        if let Some(faces) = &self.faces {
+            force += faces.push(&self.chains, junction, &self.positions) * self.pressure;
         }
         // Towards the end of a vein it goes a share of its length at most.
         let nearest = ways
@@ -160,6 +177,11 @@ impl Relaxation {
     fn follow(&self, nodes: &[NodeId], junction: NodeId, moves: &mut Vec<(NodeId, f64)>) {
         let last = nodes.len() - 1;
         let away = |i: usize| if nodes[0] == junction { nodes[i] } else { nodes[last - i] };
+        if self.drifts(away(last)) {
+            // A veinlet goes along whole: else its junction would climb up to its tip.
+            moves.extend((1..=last).map(|i| (away(i), 1.0)));
+            return;
+        }
         let at = |i: usize| self.positions[away(i) as usize];
         let end = (1..last).find(|&i| self.pinned[away(i) as usize]).unwrap_or(last);
         let total: f64 = (0..end).map(|i| at(i).distance(at(i + 1))).sum();
@@ -168,6 +190,11 @@ impl Relaxation {
             along += at(i - 1).distance(at(i));
             moves.push((away(i), 1.0 - along / total));
         }
+    }
+
+    /// Whether a node is the free end of a vein that may move.
+    fn drifts(&self, node: NodeId) -> bool {
+        self.chains.at[node as usize].len() == 1 && !self.pinned[node as usize]
     }
 
     /// Whether an edge that was `old` long may be where it is.

@@ -13,6 +13,10 @@ fn relaxing(sweeps: u64) -> VeinSpec {
     VeinSpec { relaxation: sweeps, ..VeinSpec::default() }
 }
 
+fn stepping() -> VeinSpec {
+    VeinSpec { node_step_mm: 0.3, ..VeinSpec::default() }
+}
+
 /// A T: two ends opposite of each other and a stem, equally wide, with a node along each.
 fn tee() -> VeinGraph {
     let mut graph = VeinGraph::new();
@@ -21,15 +25,68 @@ fn tee() -> VeinGraph {
     let fork = graph.sprout(along, DVec2::new(0.0, 30.0));
     for side in [-1.0, 1.0] {
         let along = graph.sprout(fork, DVec2::new(side * 3.0, 30.0));
-        graph.sprout(along, DVec2::new(side * 6.0, 30.0));
+        let end = graph.sprout(along, DVec2::new(side * 6.0, 30.0));
+        // Ends of guided veins stay.
+        graph.set_rank(end, Rank { order: 3, kind: VeinKind::Tertiary });
     }
     graph
 }
 
 #[test]
+fn a_veinlet_goes_along_whole() {
+    let mut graph = VeinGraph::new();
+    let root = graph.add_root(DVec2::new(0.0, 20.0));
+    let fork = graph.sprout(root, DVec2::new(0.0, 24.0));
+    let end = graph.sprout(fork, DVec2::new(0.0, 28.0));
+    graph.set_rank(end, Rank { order: 3, kind: VeinKind::Tertiary });
+    let tip = graph.sprout(fork, DVec2::new(1.0, 24.0));
+    let places = Relaxation::new(&graph, &[1.0; 4], margin().lines(), &stepping()).run(20);
+    let [fork, tip] = [fork, tip].map(|node| places[node as usize]);
+    assert!(fork.x > 0.1, "pulled towards the veinlet: {fork}");
+    assert!((tip - fork).distance(DVec2::X) < 1e-9, "{fork} {tip}");
+}
+
+/// Four triangles of one square around a hub that is off the middle; its corners stay.
+fn pane(hub: DVec2) -> VeinGraph {
+    let mut graph = VeinGraph::new();
+    let corner = |x: f64, y: f64| DVec2::new(x, 30.0 + y);
+    let ends = [corner(-4.0, -4.0), corner(4.0, -4.0), corner(4.0, 4.0), corner(-4.0, 4.0)];
+    let mut nodes = vec![graph.add_root(ends[0])];
+    for end in &ends[1..] {
+        nodes.push(graph.sprout(nodes[nodes.len() - 1], *end));
+    }
+    let middle = graph.sprout(nodes[0], hub);
+    for &node in &nodes[1..] {
+        graph.join(node, middle);
+    }
+    graph.join(nodes[3], nodes[0]);
+    for node in nodes {
+        graph.set_rank(node, Rank { order: 1, kind: VeinKind::Primary });
+    }
+    graph
+}
+
+#[test]
+fn small_faces_press_and_large_ones_give_way() {
+    let hub = DVec2::new(2.5, 30.0);
+    let graph = pane(hub);
+    let chains = Chains::of(&graph);
+    let mut faces = Faces::of(&chains, graph.positions());
+    faces.measure(&chains, graph.positions());
+    let push = faces.push(&chains, 4, graph.positions());
+    assert!(push.x < 0.0 && push.y.abs() < 1e-12, "{push}");
+    // In the middle all are alike.
+    let even = pane(DVec2::new(0.0, 30.0));
+    let chains = Chains::of(&even);
+    let mut faces = Faces::of(&chains, even.positions());
+    faces.measure(&chains, even.positions());
+    assert!(faces.push(&chains, 4, even.positions()).length() < 1e-12);
+}
+
+#[test]
 fn equal_veins_meet_at_120_degrees() {
     let graph = tee();
-    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), 0.3);
+    let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), &stepping());
     relaxation.margin = SegmentIndex::new(Vec::new());
     let positions = relaxation.run(400);
     let hub = positions[2];
@@ -47,7 +104,7 @@ fn a_wide_vein_holds_its_course() {
     let widths = [0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0];
     let mut widths = widths.to_vec();
     widths[2] = 0.1;
-    let positions = Relaxation::new(&graph, &widths, margin().lines(), 0.3).run(5);
+    let positions = Relaxation::new(&graph, &widths, margin().lines(), &stepping()).run(5);
     assert!(positions[2].distance(graph.positions()[2]) < 0.6, "{}", positions[2]);
 }
 

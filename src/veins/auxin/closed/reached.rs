@@ -34,7 +34,7 @@ impl Sources {
                 farthest2 = farthest2.max(distance2);
             }
         }
-        let steps = PATIENCE * farthest2.sqrt() / metric.length(self.step_mm);
+        let steps = PATIENCE * farthest2.sqrt() / at.nodes.stride(metric);
         let tag = Tag { veins, last_step: at.step + steps.ceil() as u64 };
         let place = match self.free_tags.pop() {
             Some(place) => {

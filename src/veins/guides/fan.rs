@@ -65,7 +65,8 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &
         let angle = (*p - base).angle_to(DVec2::Y).abs().to_degrees();
         angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(*p, 0.97))
     };
-    let arcs = |side: &[DVec2]| runs(side.iter().copied().filter(within), 3.0 * spec.fork_spacing_mm);
+    let arcs =
+        |side: &[DVec2]| runs(side.iter().copied().filter(within), 3.0 * spec.fork_spacing_mm);
     if ground.margin().is_peltate() {
         // Both sides of the ray to the apex.
         let tip = ground.margin().apex();

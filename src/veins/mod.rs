@@ -96,9 +96,12 @@ fn auxin(
     }
     let mut rng = seed.stream(Stage::AuxinSources);
     let grown = auxin::grow(spec, blade, start, &mut rng, observer)?;
+    let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
+    // Not for particles, whose every tip is one of them.
+    let (graph, nodes_after_step) = prune::pruned(spec, graph, grown.nodes_after_step);
     Ok(Raw {
-        graph: grown.graph.mapped(|p| blade.finished_from_mature(p)),
-        nodes_after_step: grown.nodes_after_step,
+        graph,
+        nodes_after_step,
         tip_radius_mm: spec.tip_radius_mm,
         sources: grown.sources,
         unreached: grown.unreached,
@@ -138,8 +141,7 @@ fn finished(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
-    let (graph, nodes_after_step) = prune::pruned(spec, raw.graph, raw.nodes_after_step);
-    let (graph, nodes_after_step) = split::split(spec, margin, graph, nodes_after_step);
+    let (graph, nodes_after_step) = split::split(spec, margin, raw.graph, raw.nodes_after_step);
     // Before smoothing: it puts nodes between, and balance asks for junctions only.
     let graph = relax::relaxed(spec, margin, graph);
     let smooth::Smoothed { graph, nodes_after_step } =

@@ -42,9 +42,6 @@ pub struct Workload {
     pub veins: VeinSpec,
 }
 
-/// Nodes nearer than this (in steps) stand in one place: what growth itself keeps apart.
-const SAME_PLACE: f64 = 1e-3;
-
 /// What a run took and made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measure {
@@ -216,7 +213,10 @@ fn measure(
         sources: grown.sources,
         nodes: grown.graph.len(),
         joins: grown.graph.joins().len(),
-        coincident: coincident(grown.graph.positions(), SAME_PLACE * spec.node_step_mm),
+        coincident: coincident(
+            grown.graph.positions(),
+            veins::auxin::LEAST_BETWEEN_NODES * spec.node_step_mm,
+        ),
         steps: grown.nodes_after_step.len() as u64,
         source_steps: grown.source_steps,
         seconds,

@@ -11,7 +11,7 @@ use venation::raster::montage::Panel;
 use venation::seed::Seed;
 
 use crate::golden::{compare, sheet};
-use crate::support::{fail, fresh, succeed};
+use crate::support::{collection, fail, fresh, succeed};
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines").join(name)
@@ -110,15 +110,6 @@ fn blades_of_a_picture_come_with_area_length_and_a_compact_silhouette() {
     assert!(again.contains("--force overwrites"), "{again}");
     let wrong = fail(folder.path(), 2, &["inspect", scan, "--silhouettes", "s.pdf"]);
     assert!(wrong.contains("--silhouettes"), "{wrong}");
-}
-
-/// The collection of real leaves, or `None` after saying so.
-fn collection() -> Option<PathBuf> {
-    let folder = std::env::var_os("VENATION_LEAVES").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: VENATION_LEAVES does not name a collection of leaves");
-    }
-    folder
 }
 
 #[test]

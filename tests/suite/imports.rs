@@ -9,6 +9,8 @@ use venation::io::outline::{ImportedOutline, OutlineKind, OutlineOptions, import
 use venation::margin::{MarginKind, MarginSpec, build};
 use venation::seed::Seed;
 
+use crate::support::collection;
+
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines").join(name)
 }
@@ -207,15 +209,6 @@ proptest::proptest! {
         std::fs::write(&path, bytes).expect("written");
         let _ = import(&path, &options());
     }
-}
-
-/// The collection, or `None` after saying so.
-fn collection() -> Option<PathBuf> {
-    let folder = std::env::var_os("VENATION_LEAVES").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: VENATION_LEAVES does not name a collection of leaves");
-    }
-    folder
 }
 
 #[test]

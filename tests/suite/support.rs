@@ -84,3 +84,12 @@ pub(crate) const FEW_VEINS: &[&str] = &[
 pub(crate) fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     [arguments, &["--size", "64"], FEW_VEINS].concat()
 }
+
+/// The collection of real leaves, or `None` after saying so.
+pub(crate) fn collection() -> Option<PathBuf> {
+    let folder = std::env::var_os("VENATION_LEAVES").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("skipped: VENATION_LEAVES does not name a collection of leaves");
+    }
+    folder
+}

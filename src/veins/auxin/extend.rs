@@ -16,7 +16,7 @@ const LEAST_BETWEEN_CHILDREN: f64 = 0.25;
 
 /// A node nearer than this (in steps) to any other would stand in the same place; far above
 /// rounding, far below what could be seen.
-const LEAST_BETWEEN_NODES: f64 = 1e-3;
+pub(crate) const LEAST_BETWEEN_NODES: f64 = 1e-3;
 
 /// The sum of unit vectors shorter than this pulls nowhere. One vector alone has length 1, less
 /// rounding.

@@ -34,6 +34,7 @@ use crate::seed::Rng;
 use callers::Callers;
 use convergence::Convergence;
 pub use convergence::ConvergenceSpec;
+pub(crate) use extend::LEAST_BETWEEN_NODES;
 use extend::{Meeting, Nodes};
 use habit::Steering;
 pub use habit::{DensitySpec, PhaseSpec};

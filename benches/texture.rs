@@ -1,65 +1,88 @@
 //! Painting both sides of a leaf, and packing the same maps, by the side of the texture.
 //!
-//! `cargo bench --bench texture`; set RAYON_NUM_THREADS=1 for the cost on one core.
+//! `cargo bench --bench texture`; set RAYON_NUM_THREADS=1 for the cost on one core. Before the benches
+//! it prints the CPU time of painting over that of packing, the least of some runs in turn.
 
-#[path = "../tests/suite/sample_leaf.rs"]
-#[expect(dead_code, reason = "shared with the tests, which also want a leaf without veins")]
-mod sample_leaf;
+use std::time::Duration;
 
+use cpu_time::ProcessTime;
 use venation::io::image::{Caption, map_png};
-use venation::margin::Margin;
 use venation::observer::Silent;
+use venation::pipeline::{self, Grown};
+use venation::presets;
 use venation::seed::Seed;
-use venation::texture::damage::DamageSpec;
-use venation::texture::map::{MapKind, MapSet};
-use venation::texture::petiole::PetioleSpec;
-use venation::texture::pigment::{ColourSpec, StateSpec};
-use venation::texture::relief::ReliefSpec;
-use venation::texture::{Paint, SideMaps, TextureSet, TextureSpec, paint};
-use venation::veins::Venation;
+use venation::spec::LeafSpec;
+use venation::texture::map::MapKind;
+use venation::texture::{SideMaps, TextureSet};
 
 fn main() {
+    if std::env::args().any(|arg| arg == "--bench") {
+        for name in ["beech", "lotus"] {
+            let leaf = Leaf::grown(name);
+            for size_px in [2048, 4096] {
+                leaf.compare(name, size_px);
+            }
+        }
+    }
     divan::main();
 }
 
 /// The maps whose painting and packing are compared.
 const MAPS: [MapKind; 4] = [MapKind::BaseColour, MapKind::Height, MapKind::Normal, MapKind::Orm];
 
-fn painted(size_px: u64) -> TextureSet {
-    let margin = sample_leaf::ovate(80.0);
-    paint_on(&margin, &sample_leaf::veins(&margin), size_px)
+struct Leaf {
+    spec: LeafSpec,
+    grown: Grown,
 }
 
-fn paint_on(margin: &Margin, veins: &Venation, size_px: u64) -> TextureSet {
-    let settings = Paint {
-        texture: &TextureSpec { size_px, ..TextureSpec::default() },
-        petiole: &PetioleSpec::default(),
-        colour: &ColourSpec::default(),
-        state: &StateSpec::default(),
-        damage: &DamageSpec::default(),
-        relief: &ReliefSpec::default(),
-        maps: MapSet::of(&MAPS),
-        default_speckles: 6,
+impl Leaf {
+    fn grown(preset: &str) -> Self {
+        let preset = presets::find(preset).expect("a preset");
+        let document = preset.document().expect("presets are valid");
+        let mut spec = document.resolve(Seed(1)).expect("presets are valid");
+        spec.output.maps = MAPS.map(MapKind::word).join(",");
+        let grown = pipeline::grow(&spec, Seed(1), &mut Silent).expect("presets grow");
+        Self { spec, grown }
+    }
+
+    fn paint(&self, size_px: u64) -> TextureSet {
+        let mut spec = self.spec.clone();
+        spec.texture.size_px = size_px;
+        pipeline::paint(&spec, &self.grown, Seed(1), &mut Silent).expect("a leaf can be painted")
+    }
+
+    fn compare(&self, name: &str, size_px: u64) {
+        let (mut painting, mut packing) = (Duration::MAX, Duration::MAX);
+        for _ in 0..5 {
+            let start = ProcessTime::now();
+            let set = self.paint(size_px);
+            painting = painting.min(start.elapsed());
+            let start = ProcessTime::now();
+            pack(&set);
+            packing = packing.min(start.elapsed());
+        }
+        let ratio = painting.as_secs_f64() / packing.as_secs_f64();
+        println!("{name} {size_px}: painting {painting:.2?}, packing {packing:.2?}, {ratio:.2}");
+    }
+}
+
+fn pack(set: &TextureSet) -> usize {
+    let packed = |side: &SideMaps, map: MapKind| {
+        let (size, samples) = (side.dimensions(map), side.samples(map));
+        map_png(map, map.bits(), size, &samples, &Caption::default()).len()
     };
-    paint(&settings, margin, veins, Seed(3), &mut Silent).expect("a leaf can be painted")
+    let sides = [&set.front, &set.back].into_iter();
+    sides.flat_map(|side| MAPS.map(|map| packed(side, map))).sum()
 }
 
 #[divan::bench(args = [256, 512, 1024, 2048, 4096], max_time = 5)]
 fn paint_both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
-    let margin = sample_leaf::ovate(80.0);
-    let veins = sample_leaf::veins(&margin);
-    bencher.bench(|| paint_on(&margin, &veins, size_px));
+    let leaf = Leaf::grown("beech");
+    bencher.bench(|| leaf.paint(size_px));
 }
 
 #[divan::bench(args = [256, 512, 1024, 2048, 4096], max_time = 5)]
-fn encode_both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
-    let set = painted(size_px);
-    bencher.bench(|| {
-        let sides = [&set.front, &set.back].into_iter();
-        let packed = |side: &SideMaps, map: MapKind| {
-            let (size, samples) = (side.dimensions(map), side.samples(map));
-            map_png(map, map.bits(), size, &samples, &Caption::default()).len()
-        };
-        sides.flat_map(|side| MAPS.map(|map| packed(side, map))).sum::<usize>()
-    });
+fn pack_both_sides(bencher: divan::Bencher<'_, '_>, size_px: u64) {
+    let set = Leaf::grown("beech").paint(size_px);
+    bencher.bench(|| pack(&set));
 }

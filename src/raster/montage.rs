@@ -125,30 +125,49 @@ fn fitted(width: usize, height: usize, side: usize) -> (usize, usize) {
     (scaled(width), scaled(height))
 }
 
-/// Text in lines no wider than `width`: broken between words, and within a word that is too wide by
-/// itself.
+/// Text in lines no wider than `width`: broken between words and after their hyphens, and within a
+/// part of a word that is too wide by itself.
 fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| text_width(line, size) <= width;
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
-        if let Some(line) = lines.last_mut() {
-            let longer = format!("{line} {word}");
-            if fits(&longer) {
-                *line = longer;
-                continue;
+        for (i, part) in parts(word).into_iter().enumerate() {
+            if let Some(line) = lines.last_mut() {
+                let space = if i == 0 { " " } else { "" };
+                let longer = format!("{line}{space}{part}");
+                if fits(&longer) {
+                    *line = longer;
+                    continue;
+                }
             }
-        }
-        let mut line = String::new();
-        for c in word.chars() {
-            line.push(c);
-            if !fits(&line) && line.chars().count() > 1 {
-                line.pop();
-                lines.push(std::mem::replace(&mut line, c.to_string()));
+            let mut line = String::new();
+            for c in part.chars() {
+                line.push(c);
+                if !fits(&line) && line.chars().count() > 1 {
+                    line.pop();
+                    lines.push(std::mem::replace(&mut line, c.to_string()));
+                }
             }
+            lines.push(line);
         }
-        lines.push(line);
     }
     lines
+}
+
+/// A word in parts, each but the last with its hyphen; a sign before a number is no hyphen.
+fn parts(word: &str) -> Vec<&str> {
+    let mut parts = Vec::new();
+    let mut start = 0;
+    for (i, _) in word.match_indices('-') {
+        let before = word[..i].chars().next_back().is_some_and(char::is_alphanumeric);
+        let after = word[i + 1..].chars().next().is_some_and(char::is_alphabetic);
+        if before && after {
+            parts.push(&word[start..=i]);
+            start = i + 1;
+        }
+    }
+    parts.push(&word[start..]);
+    parts
 }
 
 #[cfg(test)]
@@ -175,6 +194,15 @@ mod tests {
         assert!(lines.iter().all(|line| text_width(line, 16.0) <= 120.0), "{lines:?}");
         let squeezed = |text: &str| text.replace(' ', "");
         assert_eq!(squeezed(&lines.concat()), squeezed(text));
+    }
+
+    #[test]
+    fn compound_words_are_broken_at_their_hyphens() {
+        assert_eq!(parts("ovate-cordate-straight"), ["ovate-", "cordate-", "straight"]);
+        assert_eq!(parts("-3"), ["-3"]);
+        assert_eq!(parts("1-9"), ["1-9"]);
+        let lines = wrapped("ovate-cordate-straight", 16.0, text_width("ovate-cordate-", 16.0));
+        assert_eq!(lines, ["ovate-cordate-", "straight"]);
     }
 
     #[test]

@@ -194,7 +194,17 @@ impl OutputSpec {
     pub fn resolve(&self) -> Result<Output, OutputError> {
         let maps = match self.maps.trim() {
             "default" => self.profile.maps().to_vec(),
-            words => MapKind::list(words)?,
+            // Among others `default` stands for its words.
+            words => {
+                let standard: Vec<&str> =
+                    self.profile.maps().iter().map(|map| map.word()).collect();
+                let standard = standard.join(",");
+                let spelt = |word: &str| match word.trim() {
+                    "default" => standard.clone(),
+                    word => word.to_owned(),
+                };
+                MapKind::list(&words.split(',').map(spelt).collect::<Vec<_>>().join(","))?
+            }
         };
         let formats = match self.formats.trim() {
             "none" => Vec::new(),

@@ -148,6 +148,14 @@ fn copy(leaf: &SideMaps, sheet: &mut SideMaps, from: PixelRect, to: PixelRect) {
     rows(&leaf.vein_mask, &mut sheet.vein_mask, from, to);
     rows(&leaf.vein_order, &mut sheet.vein_order, from, to);
     rows(&leaf.bump, &mut sheet.bump, from, to);
+    if let (Some(leaf), Some(sheet)) = (&leaf.deep, &mut sheet.deep) {
+        rows(&leaf.base_colour, &mut sheet.base_colour, from, to);
+        rows(&leaf.roughness, &mut sheet.roughness, from, to);
+        rows(&leaf.occlusion, &mut sheet.occlusion, from, to);
+        rows(&leaf.transmission, &mut sheet.transmission, from, to);
+        rows(&leaf.translucency, &mut sheet.translucency, from, to);
+        rows(&leaf.vein_mask, &mut sheet.vein_mask, from, to);
+    }
 }
 
 fn rows<T: Copy>(leaf: &Grid<T>, sheet: &mut Grid<T>, from: PixelRect, to: PixelRect) {

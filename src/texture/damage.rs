@@ -13,10 +13,11 @@ use std::collections::VecDeque;
 use glam::DVec2;
 
 use super::guide::{Guide, Lattice, Place, between, mixed};
+use super::tissue::smooth;
 use crate::margin::Margin;
 use crate::parameter::parameters;
 use crate::raster::Grid;
-use crate::raster::components::Components;
+use crate::raster::components::{Components, neighbours};
 use crate::raster::contour::contours;
 use crate::seed::{Rng, Seed, Stage};
 use crate::units::TextureFrame;
@@ -70,20 +71,31 @@ pub(super) struct Injury {
     pub pale: f32,
 }
 
-/// A node of the wounds: depth in a gap and in a skeletonised area (mm, negative outside), how brown
-/// and how pale.
-type Wound = [f32; 4];
+/// A node of the wounds: depths in a gap, a skeletonised area, a spot, a mine and the line of frass in
+/// it (mm, negative outside), how brown and how pale. What has an edge is kept as a depth, so that the
+/// edge is as sharp as the texels, not as the nodes.
+type Wound = [f32; 7];
 
 const GONE: usize = 0;
 const BARE: usize = 1;
-const BROWN: usize = 2;
-const PALE: usize = 3;
+const SPOT: usize = 2;
+const MINE: usize = 3;
+const FRASS: usize = 4;
+const BROWN: usize = 5;
+const PALE: usize = 6;
+
+/// No wound at all.
+const SOUND: Wound = [FAR_MM, FAR_MM, FAR_MM, FAR_MM, FAR_MM, 0.0, 0.0];
 
 /// Far from any gap (mm).
 const FAR_MM: f32 = -10.0;
 
 /// What has fallen off lies so deep in the gap (mm).
 const FALLEN_MM: f32 = 1.0;
+
+/// What is no thicker than twice this (mm) holds nothing; so far from any gap nothing has got thinner.
+const NECK_MM: f32 = 0.15;
+const HEALTHY_MM: f32 = 1.5;
 
 /// Tissue this near to a gap has died (mm).
 const RIM_MM: f32 = 0.45;
@@ -95,6 +107,7 @@ pub(super) struct Wounds {
     per_texel: f32,
     per_mm: f32,
     nodes: Vec<Wound>,
+    rings: Vec<Vec<DVec2>>,
 }
 
 /// What a wound is at one texel.
@@ -104,11 +117,41 @@ pub(super) struct WoundAt {
     pub gone: f32,
     /// Depth in a skeletonised area (mm).
     pub bare: f32,
-    pub injury: Injury,
+    /// Depth in a spot (mm).
+    spot: f32,
+    /// Depth in a mine, and in the frass along it (mm).
+    mine: [f32; 2],
+    injury: Injury,
 }
 
+impl WoundAt {
+    /// What has been done to the tissue, whose areoles and grain stand so high (−1 – 1): they make the
+    /// edges uneven, since disease and its eaters go from cell to cell.
+    #[inline]
+    pub(super) fn injury(&self, areole: f32, grain: f32, per_mm: f32) -> Injury {
+        let Injury { mut brown, mut pale } = self.injury;
+        brown += 1.4 * brown * (1.0 - brown) * (areole + 0.6 * grain);
+        // Half a texel of softness, or as much as tissue has.
+        let per_mm = per_mm.min(MOST_SHARP_PER_MM);
+        let within = |depth: f32| (0.5 + depth * per_mm).clamp(0.0, 1.0);
+        let mined = within(self.mine[0] + 0.03 * grain);
+        pale = pale.max(mined);
+        brown = brown.max(mined * within(self.mine[1] + 0.04 * grain) * (0.6 + 0.3 * grain));
+        // A dark rim around what has dried out.
+        let depth = self.spot + 0.05 * grain + 0.08 * areole;
+        let spot = within(depth);
+        let dry = smooth(0.12, 0.5, depth);
+        brown = brown.max(spot * (1.0 - 0.5 * dry));
+        pale = pale.max(spot * dry);
+        Injury { brown: brown.clamp(0.0, 1.0), pale: pale.clamp(0.0, 1.0) }
+    }
+}
+
+/// No edge of an injury is sharper than this: a fiftieth of a millimetre is a cell.
+const MOST_SHARP_PER_MM: f32 = 50.0;
+
 impl Wounds {
-    /// The wounds of a leaf; `None` where nothing has happened.
+    /// The wounds of a leaf.
     pub(super) fn new(
         spec: &DamageSpec,
         margin: &Margin,
@@ -117,10 +160,7 @@ impl Wounds {
         lattice: &Lattice<'_>,
         per_mm: f32,
         seed: Seed,
-    ) -> Option<Self> {
-        if spec.is_none() {
-            return None;
-        }
+    ) -> Self {
         let seed = if spec.seed == 0 { seed } else { Seed(spec.seed) };
         let mut blade = Blade::new(margin, venation, guide, lattice, seed);
         // Who eats comes last: it takes the spots along.
@@ -132,7 +172,9 @@ impl Wounds {
         blade.bites(spec.margin_bites);
         blade.holes(spec.holes);
         blade.let_fall();
-        Some(Self { side: guide.side(), per_texel: guide.per_texel(), per_mm, nodes: blade.nodes })
+        let rings = rings(&blade.nodes, guide, lattice.frame);
+        let (side, per_texel) = (guide.side(), guide.per_texel());
+        Self { side, per_texel, per_mm, nodes: blade.nodes, rings }
     }
 
     /// The wounds along row `y` of the texture.
@@ -144,25 +186,36 @@ impl Wounds {
         WoundRow { wounds: self, nodes }
     }
 
+    /// Whether only veins are left at a texel.
+    pub(super) fn is_bare(&self, x: usize, y: usize) -> bool {
+        let [(i, _), (j, _)] = [x, y].map(|texel| between(texel, self.per_texel, self.side));
+        let near = [0, 1, self.side, self.side + 1];
+        near.iter().any(|step| self.nodes[j * self.side + i + step][BARE] > 0.0)
+    }
+
     /// The outline of what is left of the blade, and of the gaps in it (mm): simple rings,
     /// anticlockwise around tissue, clockwise around gaps. Skeletonised areas count as tissue.
-    pub(super) fn rings(&self, guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>> {
-        if self.nodes.iter().all(|node| node[GONE] <= 0.0) {
-            return Vec::new();
-        }
-        let depth = |(i, node): (usize, &Wound)| guide.node(i).edge.min(-node[GONE]);
-        let depths = self.nodes.iter().enumerate().map(depth).collect();
-        let field = Grid::from_values(self.side, self.side, depths);
-        let in_mm = |mut ring: Vec<DVec2>| {
-            for p in &mut ring {
-                *p = frame.leaf_from_pixel(*p, self.side);
-            }
-            // Rows run down and leaves up: the turn is the other way.
-            ring.reverse();
-            ring
-        };
-        contours(&field, 0.0).into_iter().map(in_mm).collect()
+    pub(super) fn rings(&self) -> &[Vec<DVec2>] {
+        &self.rings
     }
+}
+
+fn rings(nodes: &[Wound], guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>> {
+    if nodes.iter().all(|node| node[GONE] <= 0.0) {
+        return Vec::new();
+    }
+    let side = guide.side();
+    let depth = |(i, node): (usize, &Wound)| guide.node(i).edge.min(-node[GONE]);
+    let field = Grid::from_values(side, side, nodes.iter().enumerate().map(depth).collect());
+    let in_mm = |mut ring: Vec<DVec2>| {
+        for p in &mut ring {
+            *p = frame.leaf_from_pixel(*p, side);
+        }
+        // Rows run down and leaves up: the turn is the other way.
+        ring.reverse();
+        ring
+    };
+    contours(&field, 0.0).into_iter().map(in_mm).collect()
 }
 
 /// The wounds along one row of the texture.
@@ -177,11 +230,14 @@ impl WoundRow<'_> {
     #[inline]
     pub(super) fn at(&self, x: usize) -> WoundAt {
         let (i, t) = between(x, self.wounds.per_texel, self.nodes.len());
-        let [gone, bare, brown, pale] = mixed(&self.nodes[i], &self.nodes[i + 1], t);
+        let [gone, bare, spot, mine, frass, brown, pale] =
+            mixed(&self.nodes[i], &self.nodes[i + 1], t);
         let rim = 1.0 - (-gone / RIM_MM).clamp(0.0, 1.0);
         WoundAt {
             gone: (0.5 + gone * self.wounds.per_mm).clamp(0.0, 1.0),
             bare,
+            spot,
+            mine: [mine, frass],
             injury: Injury {
                 brown: brown.max(0.85 * rim * rim).clamp(0.0, 1.0),
                 pale: pale.clamp(0.0, 1.0),
@@ -203,7 +259,6 @@ struct Blade<'a> {
     breadth: f32,
     nodes: Vec<Wound>,
     rng: Rng,
-    noise: u32,
 }
 
 impl<'a> Blade<'a> {
@@ -214,8 +269,6 @@ impl<'a> Blade<'a> {
         lattice: &'a Lattice<'a>,
         seed: Seed,
     ) -> Self {
-        let mut rng = seed.stream(Stage::Damage);
-        let noise = rng.bits() as u32;
         let count = guide.side() * guide.side();
         Self {
             margin,
@@ -224,9 +277,8 @@ impl<'a> Blade<'a> {
             primary: lattice.vein_distances(venation, 1),
             inside: (0..count).filter(|&i| guide.node(i).edge > 0.0).count(),
             breadth: margin.area_mm2().sqrt() as f32,
-            nodes: vec![[FAR_MM, FAR_MM, 0.0, 0.0]; count],
-            rng,
-            noise,
+            nodes: vec![SOUND; count],
+            rng: seed.stream(Stage::Damage),
         }
     }
 
@@ -305,16 +357,22 @@ impl<'a> Blade<'a> {
         patch.iter().filter(|entry| taken(entry)).count()
     }
 
-    /// Takes what hangs on nothing any more: of every piece that the whole blade had, the largest part
-    /// stays. Primary veins hold together, however fine they are beside the nodes.
+    /// Takes what hangs on nothing any more, or on a thread: of every piece that the whole blade had,
+    /// the largest part stays. Primary veins hold together, however fine they are beside the nodes.
     fn let_fall(&mut self) {
         let (side, spacing) = (self.guide.side(), self.lattice.spacing() as f32);
-        let pieces = |held: &dyn Fn(usize) -> bool| {
-            let mask = (0..side * side).map(|i| self.place(i).edge > 0.0 && held(i)).collect();
-            Components::of(&Grid::from_values(side, side, mask))
+        let thread = NECK_MM.max(0.4 * spacing);
+        let tissue = |i: usize| self.place(i).edge > 0.0 && self.nodes[i][GONE] <= 0.0;
+        let holds = |i: usize| {
+            let gone = self.nodes[i][GONE];
+            let thick = gone < -HEALTHY_MM || self.place(i).edge.min(-gone) > thread;
+            tissue(i) && (thick || self.primary[i] < 1.5 * spacing)
         };
-        let whole = pieces(&|_| true);
-        let left = pieces(&|i| self.nodes[i][GONE] <= 0.0 || self.primary[i] < 1.5 * spacing);
+        let pieces = |mask: &dyn Fn(usize) -> bool| {
+            Components::of(&Grid::from_values(side, side, (0..side * side).map(mask).collect()))
+        };
+        let whole = pieces(&|i| self.place(i).edge > 0.0);
+        let mut left = pieces(&holds);
         let mut largest = vec![0_usize; whole.areas.len()];
         let pairs = || whole.labels.values().iter().zip(left.labels.values());
         for (&piece, &part) in pairs().filter(|(_, part)| **part > 0) {
@@ -323,11 +381,21 @@ impl<'a> Blade<'a> {
                 *best = part as usize;
             }
         }
-        let fallen: Vec<usize> = pairs()
-            .enumerate()
-            .filter(|&(_, (&piece, &part))| part > 0 && largest[piece as usize] != part as usize)
-            .map(|(i, _)| i)
-            .collect();
+        // Rims and threads go with what they are nearest to.
+        let labels = left.labels.values_mut();
+        let mut queue: VecDeque<usize> = (0..labels.len()).filter(|&i| labels[i] > 0).collect();
+        while let Some(i) = queue.pop_front() {
+            for next in neighbours(i, side, side) {
+                if labels[next] == 0 && tissue(next) {
+                    labels[next] = labels[i];
+                    queue.push_back(next);
+                }
+            }
+        }
+        let stays = |i: usize| {
+            largest[whole.labels.values()[i] as usize] == left.labels.values()[i] as usize
+        };
+        let fallen: Vec<usize> = (0..side * side).filter(|&i| tissue(i) && !stays(i)).collect();
         for i in fallen {
             let (x, y) = (i % side, i / side);
             for row in y.saturating_sub(2)..(y + 3).min(side) {

@@ -52,6 +52,9 @@ impl Place {
 /// Feature sizes of the three noises (mm): across the leaf, between secondaries, around areoles.
 const NOISE_MM: [f32; 3] = [16.0, 4.5, 1.6];
 
+/// Wounds lie on a guide with at least so many nodes a side.
+const NODES_OF_WOUNDS: usize = 512;
+
 /// The coarse grid.
 #[derive(Debug)]
 pub(super) struct Guide {
@@ -77,6 +80,12 @@ impl Guide {
         (size / 2).clamp(16, 1024)
     }
 
+    /// That of the wounds, which have edges: a leaf of few texels is to lose no other tissue than one
+    /// of many.
+    pub(super) fn is_fine_enough_for_wounds(&self) -> bool {
+        self.side >= NODES_OF_WOUNDS
+    }
+
     pub(super) fn new(
         margin: &Margin,
         venation: &Venation,
@@ -85,7 +94,31 @@ impl Guide {
         reach: &Reach<'_>,
         seed: u32,
     ) -> Self {
-        let side = Self::side_for(size);
+        Self::with_side(Self::side_for(size), margin, venation, frame, size, reach, seed)
+    }
+
+    /// As fine as wounds need it.
+    pub(super) fn of_wounds(
+        margin: &Margin,
+        venation: &Venation,
+        frame: &TextureFrame,
+        size: usize,
+        seed: u32,
+    ) -> Self {
+        // Nobody asks it for colours.
+        let reach = Reach { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
+        Self::with_side(NODES_OF_WOUNDS, margin, venation, frame, size, &reach, seed)
+    }
+
+    fn with_side(
+        side: usize,
+        margin: &Margin,
+        venation: &Venation,
+        frame: &TextureFrame,
+        size: usize,
+        reach: &Reach<'_>,
+        seed: u32,
+    ) -> Self {
         let lattice = Lattice { frame, side };
         let outline: Vec<_> = polygon::edges(margin.outline()).collect();
         let slits = margin.cuts().iter().flat_map(|cut| cut.windows(2).map(|w| (w[0], w[1])));

@@ -11,20 +11,25 @@
 use palette::{LinSrgb, Srgb};
 use rayon::prelude::*;
 
+use super::deep::Deep;
 use super::side::{FLAT, SideMaps};
 use crate::raster::Grid;
+use crate::raster::color::word;
 
 /// The levels below a side, from half its size to a single texel.
 #[must_use]
 pub fn levels(side: &SideMaps) -> Vec<SideMaps> {
     let share = coverage(&side.base_colour);
-    let mut level =
-        Level { maps: side.clone(), alpha: side.base_colour.map(|c| f32::from(c[3]) / 255.0) };
+    let alpha = match &side.deep {
+        Some(deep) => deep.base_colour.map(|c| f32::from(c[3]) / 65535.0),
+        None => side.base_colour.map(|c| f32::from(c[3]) / 255.0),
+    };
+    let mut level = Level { maps: side.clone(), alpha };
     let mut levels = Vec::new();
     while level.alpha.width() > 1 {
         level = level.halved();
         let mut maps = level.maps.clone();
-        keep_coverage(&mut maps.base_colour, &level.alpha, share);
+        keep_coverage(&mut maps, &level.alpha, share);
         levels.push(maps);
     }
     levels
@@ -43,7 +48,7 @@ fn coverage(picture: &Grid<[u8; 4]>) -> f64 {
 }
 
 /// Scales coverages so that this share of them is at least one half.
-fn keep_coverage(picture: &mut Grid<[u8; 4]>, alpha: &Grid<f32>, share: f64) {
+fn keep_coverage(maps: &mut SideMaps, alpha: &Grid<f32>, share: f64) {
     let mut ordered: Vec<f32> = alpha.values().to_vec();
     ordered.sort_unstable_by(|a, b| b.total_cmp(a));
     let kept = (share * ordered.len() as f64).round() as usize;
@@ -58,17 +63,31 @@ fn keep_coverage(picture: &mut Grid<[u8; 4]>, alpha: &Grid<f32>, share: f64) {
     // Multiples of the golden section modulo 2³² leave no large gaps (Knuth's multiplicative hash).
     surplus.sort_unstable_by_key(|&i| ((i as u32).wrapping_mul(0x9E37_79B1), i));
     let surplus = surplus.split_off(kept.saturating_sub(above).min(surplus.len()));
-    for (texel, alpha) in picture.values_mut().iter_mut().zip(alpha.values()) {
-        // What fails on no account passes by rounding.
-        let scaled = (alpha * scale).min(1.0) * 255.0;
-        let byte = if *alpha < least { scaled.round().min(127.0) } else { scaled.round() };
-        texel[3] = byte as u8;
+    // What fails on no account passes by rounding.
+    let scaled = |alpha: f32, full: f32, fails: f32| {
+        let scaled = ((alpha * scale).min(1.0) * full).round();
+        if alpha < least { scaled.min(fails) } else { scaled }
+    };
+    for (texel, &alpha) in maps.base_colour.values_mut().iter_mut().zip(alpha.values()) {
+        texel[3] = scaled(alpha, 255.0, f32::from(FAILS)) as u8;
+    }
+    for &i in &surplus {
+        let texel = &mut maps.base_colour.values_mut()[i];
+        texel[3] = texel[3].min(FAILS);
+    }
+    let Some(deep) = &mut maps.deep else { return };
+    let fails = u16::from(FAILS) * 257;
+    for (texel, &alpha) in deep.base_colour.values_mut().iter_mut().zip(alpha.values()) {
+        texel[3] = scaled(alpha, 65535.0, f32::from(fails)) as u16;
     }
     for i in surplus {
-        let texel = &mut picture.values_mut()[i];
-        texel[3] = texel[3].min(127);
+        let texel = &mut deep.base_colour.values_mut()[i];
+        texel[3] = texel[3].min(fails);
     }
 }
+
+/// The greatest coverage that fails an alpha test at one half.
+const FAILS: u8 = 127;
 
 /// A level before its coverage is scaled.
 struct Level {
@@ -125,7 +144,22 @@ impl Level {
                 // For people, and no smaller for being far away.
                 preview: Grid::from_values(0, 0, Vec::new()),
                 enhancement: Grid::from_values(0, 0, Vec::new()),
-                deep: None,
+                deep: maps.deep.as_ref().map(|deep| {
+                    let base = |block: &Block, plane: &[[u16; 4]]| {
+                        let [r, g, b] = deep_light(block, |i| [0, 1, 2].map(|c| plane[i][c]));
+                        [r, g, b, 0]
+                    };
+                    let colour =
+                        |block: &Block, plane: &[[u16; 3]]| deep_light(block, |i| plane[i]);
+                    Box::new(Deep {
+                        base_colour: covered.of(&deep.base_colour, base),
+                        roughness: covered.of(&deep.roughness, word),
+                        occlusion: covered.of(&deep.occlusion, word),
+                        transmission: covered.of(&deep.transmission, word),
+                        translucency: covered.of(&deep.translucency, colour),
+                        vein_mask: plain.of(&deep.vein_mask, word),
+                    })
+                }),
             },
             alpha,
         }
@@ -203,6 +237,17 @@ fn light(block: &Block, value: impl Fn(usize) -> [u8; 3]) -> [u8; 3] {
     [encoded.red, encoded.green, encoded.blue]
 }
 
+/// The same of colours with 16 bits a channel.
+fn deep_light(block: &Block, value: impl Fn(usize) -> [u16; 3]) -> [u16; 3] {
+    let mut sum = LinSrgb::new(0.0, 0.0, 0.0);
+    for &(i, weight) in block.iter() {
+        let [r, g, b] = value(i).map(|word| f32::from(word) / 65535.0);
+        sum += Srgb::new(r, g, b).into_linear::<f32>() * weight;
+    }
+    let encoded: Srgb<f32> = Srgb::from_linear(sum);
+    [encoded.red, encoded.green, encoded.blue].map(word)
+}
+
 /// The mean of directions, of unit length.
 fn direction(block: &Block, normals: &[[u8; 3]]) -> [u8; 3] {
     let sum = [0, 1, 2].map(|k| mean(block, |i| f32::from(normals[i][k]) - 128.0));
@@ -227,7 +272,7 @@ fn commonest(block: &Block, labels: &[u8]) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::map::MapSet;
+    use super::super::map::{MapKind, MapSet};
     use super::*;
 
     /// Green stripes, `on` of every `of` columns, ground spread black on purpose.
@@ -257,6 +302,26 @@ mod tests {
                 assert_eq!(texel[..3], [60, 140, 40]);
             }
         }
+    }
+
+    #[test]
+    fn levels_of_16_bits_are_finer_than_widened_bytes() {
+        let mut side = SideMaps::empty(16, MapSet::of(&[MapKind::Roughness]).deep());
+        let deep = side.deep.as_mut().expect("16 bits were asked for");
+        for (i, texel) in deep.base_colour.values_mut().iter_mut().enumerate() {
+            *texel = [20_000 + 7 * i as u16, 30_001, 9, u16::MAX];
+        }
+        for (i, texel) in deep.roughness.values_mut().iter_mut().enumerate() {
+            *texel = 4 * i as u16;
+        }
+        side.base_colour.values_mut().fill([78, 117, 0, 255]);
+        let half = &levels(&side)[0];
+        let deep = half.deep.as_ref().expect("levels keep their bits");
+        // Texels 0, 1, 16 and 17.
+        assert_eq!(deep.roughness[(0, 0)], 34);
+        let [red, green, _, alpha] = deep.base_colour[(0, 0)];
+        assert!(red.abs_diff(20_060) <= 1 && green.abs_diff(30_001) <= 1, "{red} {green}");
+        assert_eq!(alpha / 257, u16::from(half.base_colour[(0, 0)][3]));
     }
 
     #[test]

@@ -10,6 +10,7 @@
 pub mod atlas;
 mod band;
 mod brush;
+mod crumbs;
 pub mod damage;
 pub mod deep;
 mod dilation;
@@ -123,6 +124,10 @@ pub fn paint(
     let scene = Scene::new(paint, margin, venation, seed);
     report(1);
     let [mut front, mut back] = scene.paint();
+    if let Some(wounds) = &scene.wounds {
+        let bare = |x: usize, y: usize| wounds.is_bare(x, y);
+        crumbs::clear(&mut front, &mut back, &scene.whole(), bare);
+    }
     report(2);
     dilation::spread(&mut front, &mut back);
     let per_mm = scene.frame().pixels_per_mm(scene.size) as f32;
@@ -183,15 +188,20 @@ pub enum TextureError {
         size: u64,
     },
     /// A map that there is not.
-    #[error("output.maps: `{word}` is none of {}", known_maps())]
+    #[error("output.maps: `{word}` {}", known_maps(word))]
     Map {
         /// As given.
         word: String,
     },
 }
 
-fn known_maps() -> String {
-    MapKind::ALL.iter().map(|map| map.word()).collect::<Vec<_>>().join(", ")
+fn known_maps(word: &str) -> String {
+    let words = || MapKind::ALL.iter().map(|map| map.word());
+    let like = |other: &str| strsim::normalized_damerau_levenshtein(word, other);
+    match words().max_by(|a, b| like(a).total_cmp(&like(b))).filter(|near| like(near) > 0.6) {
+        Some(near) => format!("is no map; did you mean `{near}`?"),
+        None => format!("is none of {}", words().collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// The textures of a leaf.

@@ -19,6 +19,7 @@ use super::fields::VeinAt;
 use super::guide::Place;
 use super::petiole::StalkAt;
 use super::strip::Strip;
+use super::tissue::AREOLE;
 
 use crate::parameter::{parameters, words};
 use crate::raster::color::Tint;
@@ -157,14 +158,16 @@ impl Tissue {
     /// makes its front uneven; full strength and the reach stay where they are.
     #[inline(always)]
     fn weights(&self, per_spread_mm: f32, mottle: f32) -> [f32; 3] {
-        let [_, middle, fine] = self.place.noise;
-        let uneven = |w: f32| -> f32 {
-            (w + 2.0 * mottle * w * (1.0 - w) * (0.5 * middle + 0.35 * fine)).clamp(0.0, 1.0)
-        };
+        let [broad, middle, fine] = self.place.noise;
+        // It goes from areole to areole: as fine as the texels, and far less even than the distance.
+        let tissue = 0.5 * middle + 0.35 * fine;
+        let cells = 0.22 * self.tones[AREOLE] + 0.16 * self.tones[AREOLE + 1] + 0.14 * self.grain;
+        let uneven = |w: f32, by: f32| -> f32 { (w + mottle * w * (1.0 - w) * by).clamp(0.0, 1.0) };
+        let ragged = 6.0 * (broad + tissue + 2.2 * cells);
         [
-            uneven(self.place.from_veins),
-            uneven((1.0 - self.place.edge.max(0.0) * per_spread_mm).max(0.0_f32)),
-            uneven(self.place.speckle),
+            uneven(self.place.from_veins, 2.0 * (tissue + cells)),
+            uneven((1.0 - self.place.edge.max(0.0) * per_spread_mm).max(0.0_f32), ragged),
+            uneven(self.place.speckle, ragged),
         ]
     }
 

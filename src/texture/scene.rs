@@ -22,6 +22,8 @@ use super::side::SideMaps;
 use super::tissue;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
+use crate::raster::Grid;
+use crate::raster::color::byte;
 use crate::raster::coverage::{Capsule, polygon_rows, stroke_share};
 use crate::seed::{Seed, Stage};
 use crate::units::TextureFrame;
@@ -108,9 +110,14 @@ impl Scene {
         });
         let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], per_mm as f32);
         let guide = Guide::new(margin, venation, &frame, size, &reach, tissue);
-        let lattice = Lattice { frame: &frame, side: guide.side() };
-        let wounds =
-            Wounds::new(paint.damage, margin, venation, &guide, &lattice, per_mm as f32, seed);
+        let hurt = !paint.damage.is_none();
+        let wounds = hurt.then(|| {
+            let finer = (!guide.is_fine_enough_for_wounds())
+                .then(|| Guide::of_wounds(margin, venation, &frame, size, tissue));
+            let guide = finer.as_ref().unwrap_or(&guide);
+            let lattice = Lattice { frame: &frame, side: guide.side() };
+            Wounds::new(paint.damage, margin, venation, guide, &lattice, per_mm as f32, seed)
+        });
         let sun_deg = seed.stream(Stage::Senescence).between(0.0, 360.0);
         let course = Course::new(
             &paint.colour.pigments.autumn,
@@ -138,7 +145,7 @@ impl Scene {
                 paint.state,
                 &paint.petiole.colour,
                 petiole_reach,
-                !paint.damage.is_none(),
+                hurt,
             ),
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
@@ -158,8 +165,7 @@ impl Scene {
 
     /// Outline and gaps of a damaged blade (mm); none where it is whole.
     pub(super) fn rings(&self) -> Vec<Vec<DVec2>> {
-        let wounds = self.wounds.as_ref();
-        wounds.map_or_else(Vec::new, |wounds| wounds.rings(&self.guide, &self.frame))
+        self.wounds.as_ref().map_or_else(Vec::new, |wounds| wounds.rings().to_vec())
     }
 
     /// From the lowest to the highest place that the height maps can show (mm).
@@ -186,6 +192,24 @@ impl Scene {
             pulp::Arch::new().dispatch(Band { scene: self, number: i, rows, sides, scratch });
         });
         sides
+    }
+
+    /// How far the leaf covered the texels before there were wounds (255 for all).
+    pub(super) fn whole(&self) -> Grid<u8> {
+        let size = self.size;
+        let rows = |first: usize| {
+            let rows = first..(first + self.band).min(size);
+            let blade = self.blade_cover(rows.clone());
+            let stalk = self.stalk.rows(&self.frame, size, rows);
+            let seen = |(i, blade): (usize, f32)| {
+                let stalk = stalk.as_ref().map_or(0.0, |stalk| stalk[i].cover);
+                byte(1.0 - (1.0 - blade) * (1.0 - stalk))
+            };
+            blade.into_iter().enumerate().map(seen).collect::<Vec<u8>>()
+        };
+        let bands: Vec<Vec<u8>> =
+            (0..size.div_ceil(self.band)).into_par_iter().map(|i| rows(i * self.band)).collect();
+        Grid::from_values(size, size, bands.concat())
     }
 
     pub(super) fn blade_cover(&self, rows: Range<usize>) -> Vec<f32> {

@@ -147,6 +147,24 @@ impl SideMaps {
         }
     }
 
+    /// Takes the leaf from a texel: what is spread over the empty ones is spread later.
+    pub(super) fn clear(&mut self, i: usize) {
+        fn put<T>(plane: &mut Grid<T>, i: usize, value: T) {
+            // A plane that is not kept has no texels.
+            if let Some(texel) = plane.values_mut().get_mut(i) {
+                *texel = value;
+            }
+        }
+        put(&mut self.base_colour, i, [0; 4]);
+        put(&mut self.thickness, i, 0);
+        put(&mut self.vein_mask, i, 0);
+        put(&mut self.vein_order, i, 0);
+        if let Some(deep) = &mut self.deep {
+            put(&mut deep.base_colour, i, [0; 4]);
+            put(&mut deep.vein_mask, i, 0);
+        }
+    }
+
     /// Fills the texels outside the leaf, each plane after its map's [`Outside`].
     pub(super) fn spread(&mut self, empty: &Empty) {
         empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {

@@ -236,7 +236,8 @@ impl Strip {
             // Of a skeletonised area the veins are left, and whole areoles at its border.
             let depth = wound.bare + 0.5 * self.tones[tissue::AREOLE][i];
             let bare = (0.5 + 0.5 * depth * scene.per_mm).clamp(0.0, 1.0);
-            let mut injury = wound.injury;
+            let (areole, grain) = (self.tones[tissue::AREOLE][i], self.grain[i]);
+            let mut injury = wound.injury(areole, grain, scene.per_mm);
             if wound.bare > FAR_OUTSIDE_MM && bare > 0.0 {
                 let [third, fourth, fifth] = [0, 1, 2].map(|k| self.lines[k][i]);
                 let net = third.max(0.9 * fourth).max(0.5 * fifth);

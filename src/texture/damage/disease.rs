@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{BROWN, Blade, PALE};
+use super::{BROWN, Blade, FRASS, MINE, PALE, SPOT};
 use crate::geometry::noise;
 use crate::geometry::polygon;
 use crate::texture::tissue::smooth;
@@ -53,9 +53,8 @@ impl Blade<'_> {
                                 salt,
                             ));
                 let depth = r - to.length();
-                let rim = 1.0 - 0.35 * smooth(0.25 * r, 0.7 * r, depth);
                 let wound = &mut self.nodes[node];
-                wound[BROWN] = wound[BROWN].max(rim * smooth(-0.12, 0.12 + 0.1 * r, depth));
+                wound[SPOT] = wound[SPOT].max(depth);
                 wound[PALE] = wound[PALE].max(0.4 * smooth(-1.6 * r, 0.0, depth));
             }
         }
@@ -92,21 +91,19 @@ impl Blade<'_> {
                     + inward * f64::from(0.8 * rim * rim))
                 .normalize_or(heading);
                 let next = p + heading * f64::from(step);
-                self.gallery(p, next, half, i);
+                self.gallery(p, next, half);
                 p = next;
             }
         }
     }
 
-    fn gallery(&mut self, a: DVec2, b: DVec2, half: f32, step: usize) {
+    fn gallery(&mut self, a: DVec2, b: DVec2, half: f32) {
         for node in self.lattice.nodes_near(a, b, f64::from(half + 0.6)) {
             let p = self.at(node);
             let distance = polygon::nearest_on_segment(a, b, p).distance(p) as f32;
-            let frass = 0.35 + 0.35 * noise::unit(noise::lattice(step as i32 / 2, 0, self.noise));
             let wound = &mut self.nodes[node];
-            wound[PALE] = wound[PALE].max(smooth(-0.12, 0.12, half - distance));
-            let line = smooth(-0.1, 0.1, 0.22 * half - distance);
-            wound[BROWN] = wound[BROWN].max(frass * line);
+            wound[MINE] = wound[MINE].max(half - distance);
+            wound[FRASS] = wound[FRASS].max(0.22 * half - distance);
         }
     }
 }

@@ -165,14 +165,22 @@ impl Lattice<'_> {
 
     fn add_cone(&self, weights: &mut [f32], capsule: &Capsule) {
         let [columns, rows] = capsule.pixels(capsule.widest(), self.side, 0..self.side);
+        let Capsule { a, b, radius_a, radius_b } = *capsule;
+        let along = b - a;
+        let length2 = along.length_squared();
+        let per_length2 = if length2 > 0.0 { 1.0 / length2 } else { 0.0 };
+        let first = columns.start as i32;
         for y in rows {
-            let row = &mut weights[y * self.side..][..self.side];
-            for x in columns.clone() {
-                let (distance2, t) = capsule.nearest(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
-                let reach = capsule.radius(t);
-                if distance2 < reach * reach {
-                    row[x] = row[x].max(1.0 - distance2.sqrt() / reach);
-                }
+            let row = &mut weights[y * self.side..][columns.clone()];
+            let dy = y as f32 + 0.5 - a.y;
+            // Without a branch, so that several nodes can be weighed at once.
+            for (i, weight) in row.iter_mut().enumerate() {
+                let dx = (first + i as i32) as f32 + 0.5 - a.x;
+                let t = ((dx * along.x + dy * along.y) * per_length2).clamp(0.0, 1.0);
+                let (ex, ey) = (dx - along.x * t, dy - along.y * t);
+                let reach = (radius_a + (radius_b - radius_a) * t).max(1e-6);
+                let own = 1.0 - (ex * ex + ey * ey).sqrt() / reach;
+                *weight = if own > *weight { own } else { *weight };
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::texture::brush::{Shade, Shades};
 use crate::texture::lattice::{self, Lattice};
 use crate::texture::petiole::StalkAt;
 use crate::texture::strip::{LANES, Lane, Strip};
-use crate::texture::tissue::smooth;
+use crate::texture::tissue::{AREOLE, smooth};
 
 parameters! {
     /// Pigments and structure of a tissue. Green leaves hold 25–75 µg/cm² of chlorophyll and a fifth
@@ -134,6 +134,8 @@ pub(in crate::texture) struct Mixer {
     flush: f32,
     seasons: Vec<Turned>,
     summer: bool,
+    /// How unevenly it browns; 0 where nothing has browned yet.
+    blotches: f32,
     /// Whether neither sickness nor wounds count.
     sound: bool,
     petiole: Tint,
@@ -151,10 +153,15 @@ impl Mixer {
         let mix = |amounts: &Amounts| amounts.array().map(|v| v as f32);
         let youth = 1.0 - state.maturity as f32;
         let season = |i: usize| Turned::at(i as f32 / (SEASONS - 1) as f32, &pigments.autumn);
-        // A petiole dries with the leaf it carries.
+        // A petiole turns, and dries, with the leaf it carries.
+        let turned = smooth(0.2, 0.6, state.season as f32);
         let dry = smooth(0.6, 1.0, state.season as f32);
         let petiole = petiole.tint();
-        let dead = Tint { hue: 28.0, saturation: 0.42, value: 0.38 }.unrolled(petiole);
+        let red = smooth(1.0, 18.0, pigments.autumn.anthocyanin_ug_cm2 as f32);
+        let ripe = Tint { hue: 50.0 - 38.0 * red, saturation: 0.52, value: 0.66 - 0.16 * red };
+        let ripe = ripe.unrolled(petiole);
+        let turned = 0.8 * turned * (1.0 - pigments.autumn.chlorophyll_kept as f32);
+        let dead = Tint { hue: 28.0, saturation: 0.42, value: 0.40 }.unrolled(petiole);
         Self {
             lattice: lattice::of(spec.albedo),
             chosen: SPREADING.map(|r#type| f32::from(u8::from(r#type == spec.r#type))),
@@ -179,8 +186,9 @@ impl Mixer {
             flush: youth * pigments.flush_anthocyanin_ug_cm2 as f32,
             seasons: (0..SEASONS).map(season).collect(),
             summer: state.season == 0.0,
+            blotches: if state.season > 0.0 { pigments.autumn.blotches as f32 } else { 0.0 },
             sound: false,
-            petiole: petiole.towards(dead, dry),
+            petiole: petiole.towards(ripe, turned).towards(dead, dry),
             petiole_reach,
         }
     }
@@ -240,7 +248,7 @@ impl Mixer {
             for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
                 let tissue = strip.tissue(i);
                 let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
-                let share = 0.55 * near * tissue.veins_seen(face, self.mottle)[1];
+                let share = 0.9 * near * tissue.veins_seen(face, self.mottle)[1];
                 *seen = Shade::of(*seen).mixed(petiole, share).array();
             }
         }
@@ -297,27 +305,44 @@ impl Mixer {
         let green = mix[0] / (mix[0] + HALF_GREEN) * left;
         mix[0] = HALF_GREEN * green / (1.0 - green);
         mix[1] *= turned.carotenoid * self.young[1] * (1.0 - 0.3 * condition.chlorosis);
-        mix[2] *= self.young[1];
+        // What was red in summer bleaches.
+        mix[2] *= self.young[1] * (1.0 - 0.8 * turned.end);
         mix[2] += turned.anthocyanin * red.max(0.2) + self.flush * red.max(0.4);
         mix[3] += turned.brown;
         mix[4] += turned.structure;
+        if self.blotches > 0.0 {
+            self.decay(&mut mix, tissue, turned);
+        }
         mix = mixed(mix, DEAD, condition.death);
         mix = mixed(mix, MINED, tissue.injury.pale);
         mixed(mix, DEAD, tissue.injury.brown)
     }
 
+    /// Dead tissue rots from place to place: dark where it has gone far, paler and yellower where it has
+    /// not, dotted all over.
+    #[inline(always)]
+    fn decay(&self, mix: &mut Mix, tissue: &Tissue, turned: &Turned) {
+        let [broad, middle, fine] = tissue.place.noise;
+        let patch = 1.2 * broad + 0.8 * middle + 0.45 * fine + 0.25 * tissue.tones[AREOLE];
+        let far = self.blotches * turned.end * patch.clamp(-1.0, 1.0);
+        let dots = smooth(0.30, 0.62, 0.55 * tissue.grain + 0.6 * fine);
+        mix[1] *= 1.0 - 0.5 * far;
+        mix[3] *= (1.0 + 0.8 * far + 0.6 * self.blotches * turned.end * dots).max(0.3);
+        mix[4] -= 0.35 * far;
+    }
+
     /// What the season has made of the pigments at each place; see [`Turned`].
     #[inline(always)]
-    fn turned(&self, seasons: &Lane) -> [Lane; 5] {
+    fn turned(&self, seasons: &Lane) -> [Lane; 6] {
         if self.summer {
             return self.seasons[0].array().map(|value| [value; LANES]);
         }
-        let mut turned = [[0.0; LANES]; 5];
+        let mut turned = [[0.0; LANES]; 6];
         for (lane, season) in seasons.iter().enumerate() {
             let place = season.clamp(0.0, 1.0) * (SEASONS - 1) as f32;
             let i = (place as usize).min(SEASONS - 2);
             let (a, b) = (self.seasons[i].array(), self.seasons[i + 1].array());
-            for k in 0..5 {
+            for k in 0..6 {
                 turned[k][lane] = a[k] + (b[k] - a[k]) * (place - i as f32);
             }
         }

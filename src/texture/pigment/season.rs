@@ -34,6 +34,13 @@ parameters! {
         carotenoid_kept: number(0.8, 0.0..=1.0, ""),
         /// Brown at the end.
         brown: number(1.2, 0.0..=3.0, ""),
+        /// Red in that brown, of tannins, counted as anthocyanin.
+        litter_red_ug_cm2: number(0.5, 0.0..=30.0, "µg/cm²"),
+        /// Plates of tissue more or less than in summer at the end: dry tissue is full of air and pale,
+        /// sodden tissue dark.
+        litter_structure: number(0.55, -1.5..=1.5, "plates"),
+        /// How unevenly it browns: 0 all alike, 1 in dark blotches and pale patches.
+        blotches: number(0.6, 0.0..=1.0, ""),
         /// How much of the season lies between the first and the last place to turn.
         spread: number(0.25, 0.0..=2.0, ""),
         /// How much earlier the margin turns.
@@ -158,23 +165,28 @@ pub(super) struct Turned {
     pub brown: f32,
     /// Plates added: tissue that dries is full of air.
     pub structure: f32,
+    /// How far it has died, 0–1.
+    pub end: f32,
 }
 
 impl Turned {
     #[inline(always)]
-    pub(super) fn array(&self) -> [f32; 5] {
-        [self.chlorophyll, self.carotenoid, self.anthocyanin, self.brown, self.structure]
+    pub(super) fn array(&self) -> [f32; 6] {
+        let Self { chlorophyll, carotenoid, anthocyanin, brown, structure, end } = *self;
+        [chlorophyll, carotenoid, anthocyanin, brown, structure, end]
     }
 
     #[inline(always)]
-    pub(super) fn of([chlorophyll, carotenoid, anthocyanin, brown, structure]: [f32; 5]) -> Self {
-        Self { chlorophyll, carotenoid, anthocyanin, brown, structure }
+    pub(super) fn of(
+        [chlorophyll, carotenoid, anthocyanin, brown, structure, end]: [f32; 6],
+    ) -> Self {
+        Self { chlorophyll, carotenoid, anthocyanin, brown, structure, end }
     }
 
     /// At a place whose season is `s`.
     #[inline]
     pub(super) fn at(s: f32, spec: &SenescenceSpec) -> Self {
-        let end = smooth(0.56, 1.0, s);
+        let end = smooth(0.53, 1.0, s);
         let (green, kept) = (spec.chlorophyll_kept as f32, spec.carotenoid_kept as f32);
         // Evenly and gently by halves: a plain smooth step would leap in the middle of a film.
         let left = 1.0 - 0.5 * (smooth(0.0, 0.7, s) + (s / 0.7).min(1.0));
@@ -184,9 +196,12 @@ impl Turned {
             anthocyanin: spec.anthocyanin_ug_cm2 as f32
                 * 0.5
                 * (smooth(0.04, 0.66, s) + ((s - 0.04) / 0.62).clamp(0.0, 1.0))
-                * (1.0 - 0.88 * end),
-            brown: spec.brown as f32 * end,
-            structure: 0.4 * smooth(0.0, 0.68, s) + 0.15 * end,
+                * (1.0 - 0.88 * end)
+                + spec.litter_red_ug_cm2 as f32 * end,
+            // Slowly at first: the first trace of brown darkens most.
+            brown: spec.brown as f32 * end * (0.4 + 0.6 * end),
+            structure: 0.4 * smooth(0.0, 0.68, s) + (spec.litter_structure as f32 - 0.4) * end,
+            end,
         }
     }
 }

@@ -34,10 +34,19 @@ fn mean(set: &TextureSet) -> [f64; 3] {
 
 #[test]
 fn no_texel_sends_back_and_lets_through_more_light_than_falls_on_it() {
-    for (season, health, maturity) in
-        [(0.0, 1.0, 1.0), (0.5, 1.0, 1.0), (1.0, 1.0, 1.0), (0.2, 0.2, 0.1)]
-    {
+    // The last is bare of all but yellow, which sRGB has no room for: red alone would send back and let
+    // through more than white has.
+    for (season, health, maturity, green) in [
+        (0.0, 1.0, 1.0, 42.0),
+        (0.5, 1.0, 1.0, 42.0),
+        (1.0, 1.0, 1.0, 42.0),
+        (0.2, 0.2, 0.1, 42.0),
+        (0.0, 1.0, 1.0, 0.0),
+    ] {
         let mut settings = Settings::of_size(128);
+        let leaf = &mut settings.colour.pigments.leaf;
+        leaf.chlorophyll_ug_cm2 = green;
+        (leaf.carotenoid_ug_cm2, leaf.anthocyanin_ug_cm2) = (14.0, 0.0);
         settings.state.season = season;
         settings.state.health = health;
         settings.state.maturity = maturity;

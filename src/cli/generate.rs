@@ -111,6 +111,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if args.run.dry_run {
         return plan(args, context, &batch, &todo);
     }
+    tell_shortfalls(&document, context, &todo)?;
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
     let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
@@ -164,6 +165,33 @@ impl Batch {
         lines.extend(batch::others(path, &lines).map_err(Failure::Input)?);
         super::save(path, batch::to_jsonl(&lines).into_bytes())
     }
+}
+
+/// Says which leaves are perturbed by less than `vary` asks for.
+fn tell_shortfalls(
+    document: &Document,
+    context: &Context<'_>,
+    todo: &[(&Job, Overwrite)],
+) -> Result<(), Failure> {
+    let Some(wanted) = document.vary else { return Ok(()) };
+    let mut short = Vec::new();
+    for (job, _) in todo {
+        let varied = document.varied(Seed(job.seed))?;
+        short.extend(varied.filter(|percent| *percent < wanted));
+    }
+    let why = "with more, margins would cross themselves";
+    match &short[..] {
+        [] => {}
+        [percent] if todo.len() == 1 => {
+            context.say(&format!("vary: the margin differs by {percent} %, not {wanted}: {why}"));
+        }
+        _ => context.say(&format!(
+            "vary: {} of {} margins differ by less than {wanted} %: {why}",
+            short.len(),
+            todo.len()
+        )),
+    }
+    Ok(())
 }
 
 /// Says what a run would write and what it would leave alone.

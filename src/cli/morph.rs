@@ -17,7 +17,7 @@ use venation::raster::draw::{Canvas, Rgba};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::units::TextureFrame;
-use venation::veins::guides::PrimaryType;
+use venation::veins::guides::carry::CarriedGuides;
 
 use super::leaf_args::{self, read_document};
 use super::progress::Bar;
@@ -33,8 +33,12 @@ Examples:
 A folder holds frame_0001/leaf.svg, leaf.png and leaf.toml (from which `generate` makes that leaf) for
 every frame, strip.png with all of them, and animation.png (APNG). All frames have one scale, so that a
 growing leaf grows. A reference of weight 0 counts for nothing; the larger its weight, the nearer the
-path comes to it. With --veins all frames have the architecture of TO, or of FROM when it alone has a \
-single midrib, with numbers in between.")]
+path comes to it.
+
+With --veins the guides of both ends are laid and matched: on the way veins move from where one leaf has \
+them to where the other has. Two leaves of one type of primary veins have as many guides as TO all the \
+way, so that none is born; between others, and with --own-veins, both ends are as `generate` makes them, \
+and what only one has grows out on the way.")]
 pub(crate) struct Args {
     /// The first leaf: a preset or a TOML file.
     #[arg(value_name = "FROM")]
@@ -52,6 +56,9 @@ pub(crate) struct Args {
     /// Grow the veins of every frame and paint it.
     #[arg(long)]
     veins: bool,
+    /// The same, each end with as many veins as it has by itself.
+    #[arg(long)]
+    own_veins: bool,
     /// Seed of all frames [default: FROM's, else 1].
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -181,7 +188,7 @@ fn names(args: &Args) -> Vec<String> {
     for frame in 0..args.frames {
         let folder = folder(frame);
         names.extend(["leaf.svg", "leaf.png"].map(|name| format!("{folder}/{name}")));
-        if args.veins {
+        if args.veins || args.own_veins {
             names.push(format!("{folder}/leaf_veins.json"));
         }
         names.push(format!("{folder}/{}", io::SPEC_FILE));
@@ -199,25 +206,27 @@ fn make(
 ) -> Result<Vec<Frame>, Failure> {
     let mut bar = Bar::new(context.quiet, "");
     let last = args.frames - 1;
-    let keeps_teeth = same_teeth(path)?;
-    let laid = &architecture(leaves).veins.guides;
+    let veins = args.veins || args.own_veins;
+    let ends = ends(leaves, args.own_veins);
+    let guides = if veins { Some(carried(path, &ends, seed)?) } else { None };
     let one = |frame: usize| -> Result<Frame, Failure> {
         let u = frame as f64 / last as f64;
         let named = |problem: Error| Failure::Input(format!("frame {}: {problem}", frame + 1));
-        let mut spec = LeafSpec::mixed(leaves, &path.shares(u));
+        let shares = path.shares(u);
+        let end = if frame == 0 { Some(0) } else { (frame == last).then_some(1) };
+        let mut spec =
+            end.map_or_else(|| LeafSpec::mixed(leaves, &shares), |end: usize| ends[end].clone());
         spec.margin = path.spec_at(u).map_err(|error| named(error.into()))?;
         spec.texture.size_px = args.size;
         spec.output.maps = "basecolor".into();
-        // One architecture for all frames, so that secondaries keep their number.
-        let guides = &mut spec.veins.guides;
-        (guides.primary, guides.primary_count) = (laid.primary, laid.primary_count);
-        (guides.secondary, guides.secondary_count) = (laid.secondary, laid.secondary_count);
-        (guides.lateral_count, guides.rim) = (laid.lateral_count, laid.rim);
-        if !keeps_teeth {
-            // A vein that looked for a tooth would jump to another one on the way.
-            spec.veins.guides.tooth_reach = 0.0;
+        let is_own =
+            |guides: &CarriedGuides| end.is_some() && (args.own_veins || guides.fits_ends());
+        if let Some(guides) = guides.as_ref().filter(|guides| !is_own(guides)) {
+            let (first, last) = (shares[0], shares[shares.len() - 1]);
+            let settled = guides.settle(path, u, last / (first + last), &mut spec.veins);
+            settled.map_err(|error| named(error.into()))?;
         }
-        if !args.veins {
+        if !veins {
             let margin = path.at(u).map_err(|error| named(error.into()))?;
             return Ok(Frame { spec, margin, painted: None });
         }
@@ -238,24 +247,21 @@ fn make(
     Ok(frames)
 }
 
-/// The end whose veins all frames have: the last leaf; the first when it alone has a single midrib. Veins
-/// beside a midrib block each other as the blade changes, and come and go.
-fn architecture(leaves: &[LeafSpec]) -> &LeafSpec {
-    let (first, last) = (&leaves[0], &leaves[leaves.len() - 1]);
-    let is_pinnate = |leaf: &LeafSpec| leaf.veins.guides.primary == PrimaryType::Pinnate;
-    if is_pinnate(first) && !is_pinnate(last) { first } else { last }
+/// The first and the last leaf, with as many guides as the last one when both have one type of primary
+/// veins, unless each keeps its own.
+fn ends(leaves: &[LeafSpec], own: bool) -> [LeafSpec; 2] {
+    let mut ends = [leaves[0].clone(), leaves[leaves.len() - 1].clone()];
+    if !own {
+        let [first, last] = &mut ends;
+        first.veins.guides.numbered_as(&last.veins.guides);
+    }
+    ends
 }
 
-/// Whether both ends have the same teeth of the first order on each side, none included.
-fn same_teeth(path: &MorphPath) -> Result<bool, Failure> {
-    let count = |u: f64| -> Result<[usize; 2], Failure> {
-        let margin = path.at(u).map_err(Error::from)?;
-        let teeth = margin.landmarks().iter();
-        let teeth = teeth.filter(|mark| mark.kind == LandmarkKind::Tooth { order: 1 });
-        let right = teeth.clone().filter(|mark| mark.vertex < margin.apex_index()).count();
-        Ok([right, teeth.count() - right])
-    };
-    Ok(count(0.0)? == count(1.0)?)
+/// The guides of both ends, and between.
+fn carried(path: &MorphPath, ends: &[LeafSpec; 2], seed: Seed) -> Result<CarriedGuides, Failure> {
+    let ends = ends.each_ref().map(|leaf| (&leaf.veins, &leaf.growth));
+    Ok(CarriedGuides::new(path, ends, seed).map_err(Error::from)?)
 }
 
 fn write(args: &Args, out: &Path, frames: &[Frame], seed: Seed) -> Result<Vec<String>, Failure> {

@@ -9,7 +9,11 @@ use crate::parameter::Parameter;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
 
-pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, DocumentError> {
+/// The leaf, and by how many percent its margin was perturbed where that was asked for.
+pub(super) fn resolve(
+    document: &Document,
+    seed: Seed,
+) -> Result<(LeafSpec, Option<f64>), DocumentError> {
     let mut tree = toml::Table::new();
     let value_of =
         |key: &str| drawn(&document.value(key).expect("every parameter has a default"), key, seed);
@@ -40,10 +44,13 @@ pub(super) fn resolve(document: &Document, seed: Seed) -> Result<LeafSpec, Docum
     // The length is drawn: only now is it known what the polygon measures.
     spec.margin = spec.margin.at_length();
     let is_own = document.seed == Some(seed.0) && !document.varies_own_seed;
-    if let Some(percent) = document.vary.filter(|percent| *percent > 0.0 && !is_own) {
-        spec.margin = instances::instance(&spec.margin, percent, seed).at_length();
-    }
-    Ok(spec)
+    let wanted = document.vary.filter(|percent| *percent > 0.0 && !is_own);
+    let varied = wanted.map(|percent| {
+        let (margin, varied) = instances::instance(&spec.margin, percent, seed);
+        spec.margin = margin.at_length();
+        varied
+    });
+    Ok((spec, varied))
 }
 
 /// A record of a document that is being drawn.

@@ -185,7 +185,17 @@ impl Document {
     ///
     /// When values that are each within their limits contradict each other.
     pub fn resolve(&self, seed: crate::seed::Seed) -> Result<LeafSpec, DocumentError> {
-        draw::resolve(self, seed)
+        Ok(draw::resolve(self, seed)?.0)
+    }
+
+    /// By how many percent the margin of one leaf is perturbed: less than [`vary`](Self::vary) where it would
+    /// be none otherwise; `None` where it is taken as it stands. Costs as much as [`resolve`](Self::resolve).
+    ///
+    /// # Errors
+    ///
+    /// As [`resolve`](Self::resolve).
+    pub fn varied(&self, seed: crate::seed::Seed) -> Result<Option<f64>, DocumentError> {
+        Ok(draw::resolve(self, seed)?.1)
     }
 
     /// The document of a resolved leaf: every key given, no range left.

@@ -14,6 +14,7 @@ mod flank;
 mod marks;
 mod numbers;
 mod repair;
+mod sides;
 mod space;
 mod teeth;
 #[cfg(test)]
@@ -24,6 +25,7 @@ use super::{LandmarkKind, Margin, MarginError, MarginSpec, Outline};
 use crate::geometry::{nurbs, polygon};
 use crate::seed::Seed;
 use flank::Flank;
+pub use sides::MarginSide;
 
 /// What can be done about an outline on the way that crosses itself.
 const HINT: &str = "that is on the way between the two; give a reference with --via";

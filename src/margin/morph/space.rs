@@ -93,6 +93,19 @@ impl Space {
     }
 }
 
+impl Space {
+    /// A side between the margins as if it were the right one, from base to apex, with a measure that
+    /// answers itself in all of them: marks at equal parts of 0 to 1, stations by the way between.
+    pub(super) fn side(&self, left: bool, shares: &[f64], detail: f64) -> Vec<(f64, DVec2)> {
+        let side = if left { &self.left } else { &self.right };
+        let count = side.stations.len() as f64;
+        let stations = side.stations.iter().enumerate();
+        let measures = stations
+            .flat_map(|(j, stations)| stations.iter().map(move |share| (j as f64 + share) / count));
+        measures.chain([1.0]).zip(side.whole(shares, detail).0).collect()
+    }
+}
+
 impl Side {
     fn of(flanks: &[&Flank]) -> Self {
         let (kinds, marks) = marks::marks(flanks);
@@ -119,6 +132,15 @@ impl Side {
 
     /// The side between the margins, from base to apex, with the landmarks on it.
     fn mixed(&self, shares: &[f64], detail: f64) -> (Vec<DVec2>, Vec<Landmark>) {
+        let (mut points, mut landmarks) = self.whole(shares, detail);
+        if self.shapes.iter().all(|shape| shape.keeps_side) {
+            cut_back(&mut points, &mut landmarks);
+        }
+        (points, landmarks)
+    }
+
+    /// The same with every station, whatever it crosses.
+    fn whole(&self, shares: &[f64], detail: f64) -> (Vec<DVec2>, Vec<Landmark>) {
         let each = || self.shapes.iter().zip(shares);
         let mix = |j: usize| {
             let mut sum = Placed { from: DVec2::ZERO, angle: 0.0, distance: 0.0 };
@@ -155,9 +177,6 @@ impl Side {
             }
         }
         points.push(placed[placed.len() - 1].0);
-        if self.shapes.iter().all(|shape| shape.keeps_side) {
-            cut_back(&mut points, &mut landmarks);
-        }
         (points, landmarks)
     }
 }

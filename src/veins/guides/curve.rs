@@ -70,8 +70,12 @@ pub(super) fn beginning(line: &[DVec2], share: f64) -> Vec<DVec2> {
 
 /// Points along a line at equal steps of at most `step`, both ends included.
 pub(super) fn resampled(line: &[DVec2], step: f64) -> Vec<DVec2> {
+    resampled_to(line, ((length(line) / step).ceil() as usize).max(1))
+}
+
+/// Points along a line at so many equal steps, both ends included.
+pub(super) fn resampled_to(line: &[DVec2], count: usize) -> Vec<DVec2> {
     let total = length(line);
-    let count = ((total / step).ceil() as usize).max(1);
     let spacing = total / count as f64;
     let mut points = Vec::with_capacity(count + 1);
     let (mut walked, mut next) = (0.0, 0.0);

@@ -17,6 +17,12 @@ const CELLS: f64 = 72.0;
 /// the blade counts as bent. Oblique leaves stay below, sickles do not.
 const OBLIQUE: f64 = 0.3;
 
+/// How far from the margin a guide keeps, as a share of the way from the base.
+const AT_BASE: f64 = 0.1;
+
+/// The same for primaries: a base that tapers to a stalk leaves the midrib hardly more.
+const AT_NARROW_BASE: f64 = 0.01;
+
 /// A blade.
 pub(super) struct Ground<'a> {
     margin: &'a Margin,
@@ -51,14 +57,19 @@ impl<'a> Ground<'a> {
         self.margin.length_mm()
     }
 
-    /// How far a guide keeps from the margin at `p`: less at the base, where the margin begins.
-    fn inset_at(&self, p: DVec2) -> f64 {
-        self.inset.min(0.1 * p.distance(self.root))
-    }
-
     /// Whether a guide may run from `a`, where it is, to `b`.
     pub(super) fn is_free(&self, a: DVec2, b: DVec2) -> bool {
-        let inset = self.inset_at(b);
+        self.is_apart(a, b, AT_BASE)
+    }
+
+    /// The same for a vein out of the base along the middle of the blade, however narrow that is there.
+    pub(super) fn is_free_at_base(&self, a: DVec2, b: DVec2) -> bool {
+        self.is_apart(a, b, AT_NARROW_BASE)
+    }
+
+    /// Guides keep less of the inset at the base, where the margin begins: `share` of the way from there.
+    fn is_apart(&self, a: DVec2, b: DVec2, share: f64) -> bool {
+        let inset = self.inset.min(share * b.distance(self.root));
         polygon::contains(self.margin.outline(), b)
             && !self.lines.touches(a, b)
             && self.lines.nearest(b, inset).is_none_or(|(d2, _)| d2 >= inset * inset)

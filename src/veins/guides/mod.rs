@@ -16,10 +16,12 @@
 //! Guides never cross each other, the margin or a cut: a vein stops before it would touch anything, and
 //! one that would be left a stump is not laid.
 
+pub mod carry;
 mod course;
 mod curve;
 mod ends;
 mod fan;
+mod given;
 mod ground;
 mod intersecondary;
 mod lobes;
@@ -38,6 +40,7 @@ use crate::parameter::{parameters, words};
 use crate::seed::Rng;
 use crate::veins::graph::{Rank, VeinGraph, VeinKind};
 use crate::veins::{VeinError, VeinSpec};
+pub use given::GivenSpec;
 use ground::Ground;
 use planter::Planter;
 
@@ -170,6 +173,20 @@ parameters! {
         rim: choice(RimType, RimType::None),
         /// How far an intramarginal vein lies inside the margin.
         rim_inset: number(0.02, 0.002..=0.2, "lengths"),
+        /// Guides line by line.
+        given: group(GivenSpec, GivenSpec::default()),
+    }
+}
+
+impl GuideSpec {
+    /// Takes as many veins as another leaf has, where the primaries of both are of one type: then each has
+    /// one in the other that answers it.
+    pub fn numbered_as(&mut self, other: &Self) {
+        if self.primary == other.primary {
+            self.primary_count = other.primary_count;
+            self.secondary_count = other.secondary_count;
+            self.lateral_count = other.lateral_count;
+        }
     }
 }
 
@@ -191,9 +208,19 @@ const FINEST: f64 = 4000.0;
 /// The guides of a leaf, in the frame of the mature leaf; empty without any.
 #[must_use]
 pub fn build(spec: &VeinSpec, blade: &GrowingBlade, rng: &mut Rng) -> VeinGraph {
+    planted(spec, blade, rng, |planter| planter.graph).unwrap_or_default()
+}
+
+/// Lays the guides of a leaf and takes from them what is asked; `None` for a leaf without any.
+fn planted<T>(
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    rng: &mut Rng,
+    take: impl FnOnce(Planter<'_>) -> T,
+) -> Option<T> {
     let guides = &spec.guides;
-    if guides.primary == PrimaryType::None {
-        return VeinGraph::new();
+    if guides.primary == PrimaryType::None && guides.given.is_empty() {
+        return None;
     }
     // Where tissue does not move a bud is the part of the leaf that is there.
     let margin = blade.present();
@@ -208,9 +235,13 @@ pub fn build(spec: &VeinSpec, blade: &GrowingBlade, rng: &mut Rng) -> VeinGraph 
     let inset = (INSET_STEPS * step).min(INSET * margin.length_mm());
     let ground = Ground::new(margin, blade.root(), inset);
     let mut planter = Planter::new(&ground, step);
-    let primaries = primary::lay(guides, &mut planter, rng);
-    secondary::lay(guides, &mut planter, &primaries, rng);
-    planter.graph
+    if guides.given.is_empty() {
+        let primaries = primary::lay(guides, &mut planter, rng);
+        secondary::lay(guides, &mut planter, &primaries, rng);
+    } else {
+        given::lay(&guides.given, &mut planter);
+    }
+    Some(take(planter))
 }
 
 /// Refuses what contradicts itself.
@@ -223,5 +254,5 @@ pub(super) fn check(spec: &GuideSpec) -> Result<(), VeinError> {
         let problem = format!("must be below veins.guides.last_at ({})", spec.last_at);
         return Err(VeinError::setting("veins.guides.first_at", spec.first_at, problem));
     }
-    Ok(())
+    given::check(&spec.given)
 }

@@ -6,7 +6,7 @@ use super::curve;
 use super::ground::Ground;
 use crate::geometry::point_grid::PointGrid;
 use crate::geometry::polygon::segments_touch;
-use crate::veins::graph::{NodeId, Rank, VeinGraph};
+use crate::veins::graph::{NodeId, Rank, VeinGraph, VeinKind};
 
 /// A branch may run this close beside its parent for as many clearances from where it leaves it.
 const LEAVING: f64 = 6.0;
@@ -18,9 +18,20 @@ const CLEARANCE: f64 = 1.5;
 pub(super) struct Planter<'a> {
     pub(super) ground: &'a Ground<'a>,
     pub(super) graph: VeinGraph,
+    pub(super) records: Vec<Record>,
     near: PointGrid,
     pub(super) step: f64,
     clearance: f64,
+}
+
+/// What was laid at once: one vein, or a piece of one.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    /// From the one it grew out of.
+    pub(super) nodes: Vec<NodeId>,
+    pub(super) rank: Rank,
+    /// The node of another vein that its end was joined to.
+    pub(super) joined: Option<NodeId>,
 }
 
 /// A vein that was laid, from the node it grew out of.
@@ -62,6 +73,7 @@ impl<'a> Planter<'a> {
         Self {
             ground,
             graph: VeinGraph::new(),
+            records: Vec::new(),
             near: PointGrid::new(bounds, 2.0 * step),
             step,
             clearance: CLEARANCE * step,
@@ -92,7 +104,11 @@ impl<'a> Planter<'a> {
         let mut free = 1;
         while free < points.len() {
             let (a, b) = (points[free - 1], points[free]);
-            if !b.is_finite() || !self.ground.is_free(a, b) {
+            let is_free = match rank.kind {
+                VeinKind::Primary => self.ground.is_free_at_base(a, b),
+                _ => self.ground.is_free(a, b),
+            };
+            if !b.is_finite() || !is_free {
                 break;
             }
             // A curve that is drawn tight can cross itself.
@@ -120,7 +136,29 @@ impl<'a> Planter<'a> {
             self.near.push(p);
             nodes.push(node);
         }
+        self.records.push(Record { nodes: nodes.clone(), rank, joined: None });
         Some(Vein { nodes, line: points[..free].to_vec(), hit })
+    }
+
+    /// Where the vein of a node runs to.
+    pub(super) fn ahead(&self, node: NodeId) -> DVec2 {
+        let positions = self.graph.positions();
+        let back = self.graph.parent(node).map(|parent| positions[parent as usize]);
+        back.map_or(DVec2::Y, |back| (positions[node as usize] - back).normalize_or(DVec2::Y))
+    }
+
+    /// The share of a line that the margin and cuts leave free.
+    pub(super) fn way(&self, line: &[DVec2]) -> f64 {
+        let points = curve::resampled(line, self.step);
+        let is_free = |w: &&[DVec2]| self.ground.is_free_at_base(w[0], w[1]);
+        let free = points.windows(2).take_while(is_free).count();
+        free as f64 / (points.len() - 1).max(1) as f64
+    }
+
+    /// The node nearest to `p`, and how far it is.
+    pub(super) fn nearest(&self, p: DVec2) -> Option<(NodeId, f64)> {
+        let nearest = self.near.nearest(p, DVec2::ONE, f64::INFINITY)?;
+        Some((nearest.id, nearest.distance2.sqrt()))
     }
 
     /// Where a straight vein out of a node would meet another vein, within a distance; `None` where it
@@ -214,6 +252,10 @@ impl<'a> Planter<'a> {
         });
         if !crossed && !joined {
             self.graph.join(end, hit);
+            let ends_here = |record: &&mut Record| record.nodes.last() == Some(&end);
+            if let Some(record) = self.records.iter_mut().rev().find(ends_here) {
+                record.joined = Some(hit);
+            }
         }
     }
 }

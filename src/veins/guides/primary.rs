@@ -45,9 +45,11 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) ->
         fan::lay(spec, planter, root, rng);
         return primaries;
     }
-    let axis = planter.ground.axis();
+    let straight = planter.ground.axis();
     let amplitude = spec.irregularity * WANDER * planter.ground.length();
-    let axis = curve::wavering(&axis, amplitude, rng);
+    let wavering = curve::wavering(&straight, amplitude, rng);
+    // Where a narrow base leaves no room to stray, it does not.
+    let axis = if planter.way(&wavering) < planter.way(&straight) { straight } else { wavering };
     primaries.midrib = planter.lay(root, &axis, PRIMARY, 0.0);
     let Some(midrib) = primaries.midrib.clone() else { return primaries };
     match spec.primary {

@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 use super::curve;
-use super::planter::Planter;
+use super::planter::{CLEARANCE, CLOSE, Planter};
 use super::{GuideSpec, PRIMARY};
 use crate::seed::Rng;
 
@@ -44,17 +44,45 @@ struct Fan {
     base: DVec2,
     /// The margin that the fan reaches.
     arc: Vec<DVec2>,
-    length: f64,
+    /// How much of it is seen from the base up to each of its points: its length, where it lies across
+    /// the rays; the wall of a cleft, along which they run, counts for little.
+    seen: Vec<f64>,
 }
 
 impl Fan {
+    fn new(base: DVec2, arc: Vec<DVec2>) -> Self {
+        let mut total = 0.0;
+        let across = arc.windows(2).map(|w| {
+            let ray = (w[0].midpoint(w[1]) - base).normalize_or_zero();
+            total += ray.perp_dot(w[1] - w[0]).abs();
+            total
+        });
+        let seen = std::iter::once(0.0).chain(across).collect();
+        Self { base, arc, seen }
+    }
+
+    fn width(&self) -> f64 {
+        self.seen[self.seen.len() - 1]
+    }
+
     fn place(&self, u: f64, t: f64) -> DVec2 {
-        self.base.lerp(curve::at(&self.arc, u).0, t)
+        let goal = u.clamp(0.0, 1.0) * self.width();
+        let next = self.seen.partition_point(|&seen| seen < goal).clamp(1, self.seen.len() - 1);
+        let (from, to) = (self.seen[next - 1], self.seen[next]);
+        let part = if to > from { (goal - from) / (to - from) } else { 0.0 };
+        self.base.lerp(self.arc[next - 1].lerp(self.arc[next], part), t)
     }
 }
 
 /// Lays the veins of a fan out of the root.
 pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
+    // Each keeps to its own stretch: at the base, where those are narrow, too.
+    planter.keep_apart(CLOSE);
+    lay_rays(spec, planter, root, rng);
+    planter.keep_apart(CLEARANCE);
+}
+
+fn lay_rays(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &mut Rng) {
     let ground = planter.ground;
     let base = ground.root();
     let line = crate::geometry::polygon::resampled(
@@ -65,8 +93,9 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, root: u32, rng: &
         let angle = (*p - base).angle_to(DVec2::Y).abs().to_degrees();
         angle <= spec.primary_angle_deg && ground.is_free(base, base.lerp(*p, 0.97))
     };
-    let arcs =
-        |side: &[DVec2]| runs(side.iter().copied().filter(within), 3.0 * spec.fork_spacing_mm);
+    let arcs = |side: &[DVec2]| {
+        fans(base, side.iter().copied().filter(within), 3.0 * spec.fork_spacing_mm)
+    };
     if ground.margin().is_peltate() {
         // Both sides of the ray to the apex.
         let tip = ground.margin().apex();
@@ -86,22 +115,20 @@ fn lay_arcs(
     spec: &GuideSpec,
     planter: &mut Planter<'_>,
     root: u32,
-    arcs: Vec<Vec<DVec2>>,
+    fans: Vec<Fan>,
     basal: f64,
     rng: &mut Rng,
 ) {
-    let base = planter.ground.root();
-    let total: f64 = arcs.iter().map(|arc| curve::length(arc)).sum();
-    for arc in arcs {
-        let length = curve::length(&arc);
+    let total: f64 = fans.iter().map(Fan::width).sum();
+    for fan in fans {
         // The lobes of a cleft blade have basal veins of their own.
-        let basal = (basal * length / total).round().max(1.0) as usize;
-        lay_arc(spec, planter, root, &Fan { base, arc, length }, basal, rng);
+        let basal = (basal * fan.width() / total).round().max(1.0) as usize;
+        lay_arc(spec, planter, root, &fan, basal, rng);
     }
 }
 
-/// Stretches of a line: it breaks where two points are farther apart than `gap`.
-fn runs(points: impl Iterator<Item = DVec2>, gap: f64) -> Vec<Vec<DVec2>> {
+/// Stretches of a line as seen from the base: it breaks where two points are farther apart than `gap`.
+fn fans(base: DVec2, points: impl Iterator<Item = DVec2>, gap: f64) -> Vec<Fan> {
     let mut runs: Vec<Vec<DVec2>> = Vec::new();
     for p in points {
         match runs.last_mut() {
@@ -109,10 +136,12 @@ fn runs(points: impl Iterator<Item = DVec2>, gap: f64) -> Vec<Vec<DVec2>> {
             _ => runs.push(vec![p]),
         }
     }
+    runs.retain(|run| run.len() > 1);
+    let mut fans: Vec<Fan> = runs.into_iter().map(|run| Fan::new(base, run)).collect();
     // The bottom of a cleft that is seen past its walls needs no veins of its own.
-    let longest = runs.iter().map(|run| curve::length(run)).fold(0.0, f64::max);
-    runs.retain(|run| curve::length(run) > LEAST_ARC * longest);
-    runs
+    let widest = fans.iter().map(Fan::width).fold(0.0, f64::max);
+    fans.retain(|fan| fan.width() > LEAST_ARC * widest);
+    fans
 }
 
 /// Lays the veins that serve one stretch of the margin.
@@ -124,7 +153,7 @@ fn lay_arc(
     basal: usize,
     rng: &mut Rng,
 ) {
-    let count = (fan.length / spec.fork_spacing_mm).ceil().clamp(1.0, MOST_ENDS) as usize;
+    let count = (fan.width() / spec.fork_spacing_mm).ceil().clamp(1.0, MOST_ENDS) as usize;
     let basal = basal.clamp(1, count);
     let mut open: Vec<Branch> = (0..basal)
         .rev()
@@ -143,9 +172,10 @@ fn lay_arc(
         let middle = (branch.first + branch.last) as f64 / 2.0
             + 0.2 * spec.irregularity * served as f64 * sway[1];
         let middle = middle / count as f64;
-        let Some((from, u, t)) = swing(fan, planter, &branch, middle, fork) else { continue };
-        // What was stopped on its way forks no more.
-        if served > 1 && t < 1.0 {
+        // A vein to one end goes as far as it gets; one that could not come to its fork forks at once.
+        let reached = swing(fan, planter, &branch, middle, fork);
+        if served > 1 {
+            let (from, u, t) = reached.unwrap_or((branch.from, branch.u, branch.t));
             let half = branch.first + served / 2;
             open.push(Branch { from, u, t, first: half, last: branch.last });
             open.push(Branch { from, u, t, first: branch.first, last: half });
@@ -154,7 +184,7 @@ fn lay_arc(
 }
 
 /// Lays a branch that swings over to the ray `middle` and ends at the share `end` of it: its last node
-/// and place. `None` when something stops it.
+/// and place. `None` when something stops it; unless it runs to the margin, it is not laid then.
 fn swing(
     fan: &Fan,
     planter: &mut Planter<'_>,
@@ -169,7 +199,7 @@ fn swing(
         return Some((from, u, t));
     }
     // An offset that is made good evenly slower leaves at twice its mean slope.
-    let aside = (middle - u).abs() * fan.length * f64::midpoint(t, end).max(t);
+    let aside = (middle - u).abs() * fan.width() * f64::midpoint(t, end).max(t);
     let span = 2.0 * aside / libm::tan(FORK_ANGLE.to_radians()) / ray;
     let span = span.clamp(1e-9, end - t);
     let at = |share: f64| {
@@ -178,8 +208,7 @@ fn swing(
         fan.place(u + (middle - u) * (1.0 - left * left), here)
     };
     let line: Vec<DVec2> = (0..=POINTS).map(|i| at(i as f64 / POINTS as f64)).collect();
-    let vein = planter.lay(from, &line, PRIMARY, 0.0)?;
-    let (node, place, _) = vein.end();
-    let is_whole = place.distance(line[POINTS]) <= 2.0 * planter.step;
-    is_whole.then_some((node, middle, end))
+    let room = 1.0 - 2.0 * planter.step / curve::length(&line);
+    let vein = planter.lay(from, &line, PRIMARY, if end < 1.0 { room } else { 0.0 })?;
+    Some((vein.end().0, middle, end))
 }

@@ -12,7 +12,10 @@ use crate::veins::graph::{NodeId, Rank, VeinGraph, VeinKind};
 const LEAVING: f64 = 6.0;
 
 /// Guides keep this many steps between them.
-const CLEARANCE: f64 = 1.5;
+pub(super) const CLEARANCE: f64 = 1.5;
+
+/// As many where their courses are known not to meet.
+pub(super) const CLOSE: f64 = 0.4;
 
 /// The veins laid so far.
 pub(super) struct Planter<'a> {
@@ -78,6 +81,11 @@ impl<'a> Planter<'a> {
             step,
             clearance: CLEARANCE * step,
         }
+    }
+
+    /// Veins laid from now on keep this many steps between them.
+    pub(super) fn keep_apart(&mut self, steps: f64) {
+        self.clearance = steps * self.step;
     }
 
     pub(super) fn root(&mut self, rank: Rank) -> NodeId {
@@ -212,13 +220,17 @@ impl<'a> Planter<'a> {
     }
 
     /// Lays a line that starts beside another vein: out of the nearest node to the place where it
-    /// has got free of the others.
+    /// has got free of the others for good.
     pub(super) fn lay_beside(&mut self, line: &[DVec2], rank: Rank, least: f64) -> Option<Vein> {
         let points = curve::resampled(line, self.step);
         let near = |p: DVec2| self.near.nearest(p, DVec2::ONE, f64::INFINITY);
         let free = 1.6 * self.clearance;
-        let first =
-            points.iter().position(|&p| near(p).is_some_and(|n| n.distance2 > free * free))?;
+        let is_near = |&p: &DVec2| near(p).is_none_or(|n| n.distance2 <= free * free);
+        let lower = points.len() / 2;
+        let first = points[..lower].iter().rposition(is_near).map_or(0, |last| last + 1);
+        if first == lower {
+            return None;
+        }
         // Out of a node farther back, so that it leaves at a small angle.
         let back = points[first.saturating_sub(6)];
         let from = near(back)?.id;

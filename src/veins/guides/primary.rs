@@ -156,6 +156,11 @@ fn half_widths(planter: &Planter<'_>, midrib: &Vein, side: f64) -> Vec<f64> {
     widths
 }
 
+/// Parallel veins have come to their places at this share of the length, or, in a narrow blade, so many
+/// halves of its width above the base.
+const SETTLED: f64 = 0.12;
+const SETTLED_WIDTHS: f64 = 1.5;
+
 /// Lines beside the midrib, at constant shares of the width once they have left the base.
 fn arches(
     spec: &GuideSpec,
@@ -168,11 +173,15 @@ fn arches(
     let parallel = spec.primary == PrimaryType::Parallelodromous;
     // Where the lines have come to their place, and where they end, in lengths of the midrib.
     let origin = spec.primary_origin;
-    let (settled, end) = if parallel { (0.12, 0.985) } else { (0.45, 0.955) };
+    let (latest, end) = if parallel { (SETTLED, 0.985) } else { (0.45, 0.955) };
     let widest = if parallel { 0.93 } else { 0.72 };
     let slope = libm::tan(spec.primary_angle_deg.min(80.0).to_radians());
     for side in [1.0, -1.0] {
         let widths = half_widths(planter, midrib, side);
+        let broadest = widths.iter().copied().fold(0.0, f64::max);
+        // A narrow blade has no room for many veins that part slowly.
+        let early = SETTLED_WIDTHS * broadest / midrib.length();
+        let settled = if parallel { latest.min(early) } else { latest };
         let width = |t: f64| {
             let at = (t * 64.0).clamp(0.0, 63.999);
             let (i, part) = (at as usize, at.fract());

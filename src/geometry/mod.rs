@@ -1,6 +1,7 @@
 //! Mathematics that has never heard of leaves. Vectors are glam's `DVec2`.
 
 pub mod alignment;
+pub mod box_cells;
 pub mod bspline;
 mod chains;
 pub mod compact;

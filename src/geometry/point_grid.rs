@@ -30,6 +30,12 @@ pub struct PointGrid {
     removed: usize,
 }
 
+/// The width of the cells that a grid over `bounds` has where `cell` is asked for.
+fn allowed(bounds: Rect, cell: f64) -> f64 {
+    let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
+    cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS)
+}
+
 /// The nearest point of a [`PointGrid`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
@@ -47,8 +53,7 @@ impl PointGrid {
     #[must_use]
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell =
-            cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS);
+        let cell = allowed(bounds, cell);
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(size.x), count(size.y));
         Self {
@@ -128,13 +133,11 @@ impl PointGrid {
     /// Makes cells smaller when `cell` is less than half of theirs, so that searches which shrink
     /// with a growing leaf stay short.
     pub fn refine(&mut self, cell: f64) {
-        if cell * 2.0 >= self.cell {
+        // Asked in every step: memory for finer cells is taken only where they come.
+        if cell * 2.0 >= self.cell || allowed(self.bounds, cell) * 2.0 > self.cell {
             return;
         }
         let mut finer = Self::new(self.bounds, cell);
-        if finer.cell * 2.0 > self.cell {
-            return;
-        }
         let mut present = vec![false; self.points.len()];
         for cell in 0..self.heads.len() {
             self.list(cell).for_each(|id| present[id as usize] = true);

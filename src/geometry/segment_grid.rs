@@ -26,14 +26,19 @@ pub struct SegmentGrid {
     len: u32,
 }
 
+/// The width of the cells that a grid over `bounds` has where `cell` is asked for.
+fn allowed(bounds: Rect, cell: f64) -> f64 {
+    let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
+    cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS)
+}
+
 impl SegmentGrid {
     /// An empty grid over `bounds` with cells of about `cell`; what is outside is kept in the cells at
     /// the border.
     #[must_use]
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell =
-            cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS);
+        let cell = allowed(bounds, cell);
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(size.x), count(size.y));
         let heads = vec![NONE; columns * rows];
@@ -90,13 +95,11 @@ impl SegmentGrid {
     /// Makes cells smaller when `cell` is less than half of theirs. `ends` tells where the segments
     /// are.
     pub fn refine(&mut self, cell: f64, ends: impl Fn(u32) -> (DVec2, DVec2)) {
-        if cell * 2.0 >= self.cell {
+        // Asked in every step: memory for finer cells is taken only where they come.
+        if cell * 2.0 >= self.cell || allowed(self.bounds, cell) * 2.0 > self.cell {
             return;
         }
         let mut finer = Self::new(self.bounds, cell);
-        if finer.cell * 2.0 > self.cell {
-            return;
-        }
         for id in 0..self.len {
             let (a, b) = ends(id);
             finer.push(a, b);

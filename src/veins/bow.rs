@@ -11,7 +11,10 @@ use glam::DVec2;
 use super::VeinSpec;
 use super::chains::Chains;
 use super::graph::{NodeId, VeinGraph};
+use crate::geometry::Rect;
+use crate::geometry::box_cells::BoxCells;
 use crate::geometry::polygon::segments_touch;
+use crate::geometry::segment_grid::SegmentGrid;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 use crate::seed::Rng;
@@ -29,15 +32,9 @@ pub fn bowed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph, rng: &mut Rng) 
         return graph;
     }
     let chains = Chains::of(&graph);
-    let edges: Vec<[NodeId; 2]> =
-        graph.edges().chain(graph.joins().iter().copied()).map(|(a, b)| [a, b]).collect();
     let mut positions = graph.positions().to_vec();
-    let lines = margin.lines();
     let longest = LONGEST * spec.node_step_mm;
-    let home = {
-        let at = |node: NodeId| positions[node as usize];
-        SegmentIndex::new(edges.iter().map(|&[a, b]| (at(a), at(b))).collect())
-    };
+    let mut around = Surroundings::new(&graph, margin, spec.node_step_mm);
     for chain in &chains.chains {
         // Drawn for every chain, so that one that cannot bow changes no other.
         let heights = [bell(rng), WAVE * bell(rng)];
@@ -51,7 +48,8 @@ pub fn bowed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph, rng: &mut Rng) 
         for share in [1.0, 0.5, 0.25] {
             let after = aside(&before, heights.map(|h| h * share * spec.sinuosity), longest);
             nodes.iter().zip(&after).for_each(|(&node, &p)| positions[node as usize] = p);
-            if is_sound(nodes, &positions, &edges, &home, &lines, longest) {
+            if around.are_clear(nodes, &positions) {
+                around.moved(nodes, &positions);
                 break;
             }
             nodes.iter().zip(&before).for_each(|(&node, &p)| positions[node as usize] = p);
@@ -88,25 +86,67 @@ fn aside(line: &[DVec2], heights: [f64; 2], longest: f64) -> Vec<DVec2> {
         .collect()
 }
 
-fn is_sound(
-    nodes: &[NodeId],
-    positions: &[DVec2],
-    edges: &[[NodeId; 2]],
-    home: &SegmentIndex,
-    lines: &SegmentIndex,
-    reach: f64,
-) -> bool {
-    let at = |node: NodeId| positions[node as usize];
-    let reach = DVec2::splat(0.5 * reach);
-    nodes.windows(2).all(|pair| {
-        let (p, q) = (at(pair[0]), at(pair[1]));
-        let touches = |edge: usize| {
-            let [c, d] = edges[edge];
-            let apart = pair.iter().all(|&node| node != c && node != d);
-            apart && segments_touch(p, q, at(c), at(d))
-        };
-        p != q
-            && !lines.touches(p, q)
-            && !home.any_near(p.min(q) - reach, p.max(q) + reach, touches)
-    })
+/// Edges that are looked at at once: of a long vein the box around all would hold half a leaf.
+const AT_ONCE: usize = 8;
+
+/// What a vein must not touch.
+struct Surroundings {
+    edges: Vec<[NodeId; 2]>,
+    /// Where they were.
+    home: BoxCells,
+    /// Those of veins that have bowed, and where they are.
+    bowed: Vec<[NodeId; 2]>,
+    there: SegmentGrid,
+    lines: SegmentIndex,
+    found: Vec<[NodeId; 2]>,
+}
+
+impl Surroundings {
+    fn new(graph: &VeinGraph, margin: &Margin, cell: f64) -> Self {
+        let edges: Vec<[NodeId; 2]> =
+            graph.edges().chain(graph.joins().iter().copied()).map(|(a, b)| [a, b]).collect();
+        let at = |node: NodeId| graph.positions()[node as usize];
+        let bounds = Rect::around(graph.positions().iter().copied());
+        let boxes = edges.iter().map(|ends| Rect::around(ends.map(at)));
+        Self {
+            home: BoxCells::new(bounds, 2.0 * cell, boxes),
+            bowed: Vec::new(),
+            there: SegmentGrid::new(bounds, 2.0 * cell),
+            lines: margin.lines(),
+            edges,
+            found: Vec::new(),
+        }
+    }
+
+    /// Takes note of where a vein has come to lie.
+    fn moved(&mut self, nodes: &[NodeId], positions: &[DVec2]) {
+        for pair in nodes.windows(2) {
+            self.bowed.push([pair[0], pair[1]]);
+            self.there.push(positions[pair[0] as usize], positions[pair[1] as usize]);
+        }
+    }
+
+    /// Whether a vein touches no other, nor itself or the margin, where its nodes are now.
+    fn are_clear(&mut self, nodes: &[NodeId], positions: &[DVec2]) -> bool {
+        let at = |node: NodeId| positions[node as usize];
+        let Self { edges, home, bowed, there, lines, found } = self;
+        (0..nodes.len() - 1).step_by(AT_ONCE).all(|first| {
+            let part = &nodes[first..nodes.len().min(first + AT_ONCE + 1)];
+            let around = Rect::around(part.iter().map(|&node| at(node)));
+            found.clear();
+            home.for_each_meeting(around, |edge| found.push(edges[edge as usize]));
+            there.for_each_near(around.min, around.max, |edge| found.push(bowed[edge as usize]));
+            found.extend(nodes.windows(2).map(|pair| [pair[0], pair[1]]));
+            part.windows(2).all(|pair| {
+                let (p, q) = (at(pair[0]), at(pair[1]));
+                let touches = |&[c, d]: &[NodeId; 2]| {
+                    let (r, s) = (at(c), at(d));
+                    let is_apart = pair.iter().all(|&node| node != c && node != d);
+                    let is_near = p.min(q).cmple(r.max(s)).all() && p.max(q).cmpge(r.min(s)).all();
+                    is_apart && is_near && segments_touch(p, q, r, s)
+                };
+                p != q && !lines.touches(p, q) && !found.iter().any(touches)
+            })
+        })
+    }
 }

@@ -42,9 +42,8 @@ impl Chains {
     /// The chains of `graph`.
     #[must_use]
     pub fn of(graph: &VeinGraph) -> Self {
-        let incident = incident(graph);
-        let is_stop =
-            |node: NodeId| incident[node as usize].len() != 2 || graph.parent(node).is_none();
+        let incident = Incident::new(graph);
+        let is_stop = |node: NodeId| incident.at(node).len() != 2 || graph.parent(node).is_none();
         let mut used_parent = vec![false; graph.len()];
         let mut used_join = vec![false; graph.joins().len()];
         let mut take = |edge: Edge| {
@@ -56,7 +55,7 @@ impl Chains {
         };
         let mut made = Self { chains: Vec::new(), at: vec![Vec::new(); graph.len()] };
         for start in (0..graph.len() as NodeId).filter(|&node| is_stop(node)) {
-            for &(edge, next) in &incident[start as usize] {
+            for &(edge, next) in incident.at(start) {
                 if !take(edge) {
                     continue;
                 }
@@ -64,7 +63,7 @@ impl Chains {
                 let mut here = next;
                 while !is_stop(here) {
                     let Some(&(edge, next)) =
-                        incident[here as usize].iter().find(|&&(edge, _)| take(edge))
+                        incident.at(here).iter().find(|&&(edge, _)| take(edge))
                     else {
                         break;
                     };
@@ -87,18 +86,46 @@ impl Chains {
     }
 }
 
-/// The edges at each node, each with the node at its other end: first the parent's, then by number.
-fn incident(graph: &VeinGraph) -> Vec<Vec<(Edge, NodeId)>> {
-    let mut incident = vec![Vec::new(); graph.len()];
-    for (parent, child) in graph.edges() {
-        incident[child as usize].push((Edge::Parent(child), parent));
-        incident[parent as usize].push((Edge::Parent(child), child));
+/// The edges at each node, each with the node at its other end.
+struct Incident {
+    edges: Vec<(Edge, NodeId)>,
+    /// Where those of each node start.
+    firsts: Vec<u32>,
+}
+
+impl Incident {
+    /// First the parent's, then by number.
+    fn new(graph: &VeinGraph) -> Self {
+        let ends = || {
+            let parents = graph.edges().flat_map(|(parent, child)| {
+                let edge = Edge::Parent(child);
+                [(child, edge, parent), (parent, edge, child)]
+            });
+            let joins = (0..).zip(graph.joins()).flat_map(|(number, &(a, b))| {
+                let edge = Edge::Join(number);
+                [(a, edge, b), (b, edge, a)]
+            });
+            parents.chain(joins)
+        };
+        let mut firsts = vec![0u32; graph.len() + 1];
+        ends().for_each(|(node, ..)| firsts[node as usize + 1] += 1);
+        for node in 0..graph.len() {
+            firsts[node + 1] += firsts[node];
+        }
+        let mut next = firsts.clone();
+        let mut edges = vec![(Edge::Join(0), 0); firsts[graph.len()] as usize];
+        for (node, edge, other) in ends() {
+            let place = &mut next[node as usize];
+            edges[*place as usize] = (edge, other);
+            *place += 1;
+        }
+        Self { edges, firsts }
     }
-    for (number, &(a, b)) in graph.joins().iter().enumerate() {
-        incident[a as usize].push((Edge::Join(number as u32), b));
-        incident[b as usize].push((Edge::Join(number as u32), a));
+
+    fn at(&self, node: NodeId) -> &[(Edge, NodeId)] {
+        let at = node as usize;
+        &self.edges[self.firsts[at] as usize..self.firsts[at + 1] as usize]
     }
-    incident
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ use glam::DVec2;
 
 use crate::growth::GrowingBlade;
 use crate::margin::Margin;
-use crate::observer::Observer;
+use crate::observer::{Observer, Progress};
 use crate::seed::{Seed, Stage};
 pub use error::VeinError;
 pub use graph::{NodeId, Rank, VeinGraph, VeinKind};
@@ -97,6 +97,7 @@ fn auxin(
     let mut rng = seed.stream(Stage::AuxinSources);
     let grown = auxin::grow(spec, blade, start, &mut rng, observer)?;
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
+    Refining::begin(spec, observer, graph.len());
     // Not for particles, whose every tip is one of them.
     let (graph, nodes_after_step) = prune::pruned(spec, graph, grown.nodes_after_step);
     Ok(Raw {
@@ -133,6 +134,34 @@ fn trails(
     })
 }
 
+/// How far the refinement of a grown pattern has come: in a leaf of a million nodes it takes longer than
+/// their growth.
+struct Refining<'a> {
+    observer: &'a mut dyn Observer,
+    step: u64,
+    steps: u64,
+    nodes: usize,
+}
+
+impl<'a> Refining<'a> {
+    /// A step for every sweep, and for splitting, smoothing and bowing.
+    fn begin(spec: &VeinSpec, observer: &'a mut dyn Observer, nodes: usize) -> Self {
+        let mut refining = Self { observer, step: 0, steps: spec.relaxation + 3, nodes };
+        refining.report();
+        refining
+    }
+
+    fn one_more(&mut self) {
+        self.step += 1;
+        self.report();
+    }
+
+    fn report(&mut self) {
+        let Self { step, steps, nodes, .. } = *self;
+        self.observer.report(Progress { stage: "refining", step, steps, nodes, sources: 0 });
+    }
+}
+
 /// Junctions and courses as in a real leaf, then widths and orders.
 fn finished(
     spec: &VeinSpec,
@@ -141,12 +170,16 @@ fn finished(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
+    let mut refining = Refining::begin(spec, observer, raw.graph.len());
     let (graph, nodes_after_step) = split::split(spec, margin, raw.graph, raw.nodes_after_step);
+    refining.one_more();
     // Before smoothing: it puts nodes between, and balance asks for junctions only.
-    let graph = relax::relaxed(spec, margin, graph);
+    let graph = relax::relaxed(spec, margin, graph, || refining.one_more());
     let smooth::Smoothed { graph, nodes_after_step } =
         smooth::smoothed(spec, margin, graph, nodes_after_step);
+    refining.one_more();
     let graph = bow::bowed(spec, margin, graph, &mut seed.stream(Stage::Bows));
+    refining.one_more();
     let (radii, orders) = widths::radii_and_orders(spec, &graph, raw.tip_radius_mm, observer)?;
     Ok(Venation {
         graph,

@@ -2,8 +2,8 @@
 
 use super::graph::{NodeId, VeinGraph};
 use crate::geometry::Rect;
+use crate::geometry::box_cells::BoxCells;
 use crate::geometry::polygon::segments_touch;
-use crate::geometry::segment_grid::SegmentGrid;
 
 /// Edges that cross or touch another with which they share no node; joins are edges too.
 #[must_use]
@@ -16,24 +16,17 @@ pub fn crossing_edges(graph: &VeinGraph) -> Vec<(NodeId, NodeId)> {
     };
     let length: f64 = (0..edges.len()).map(|i| ends(i).0.distance(ends(i).1)).sum();
     let bounds = Rect::around(positions.iter().copied());
-    let mut grid = SegmentGrid::new(bounds, length / edges.len().max(1) as f64);
+    let boxes = (0..edges.len()).map(|i| Rect::around(<[_; 2]>::from(ends(i))));
+    let cells = BoxCells::new(bounds, 1.5 * length / edges.len().max(1) as f64, boxes);
     let mut crossing = Vec::new();
-    for (i, &(a, b)) in edges.iter().enumerate() {
-        let (p, q) = ends(i);
-        let before = crossing.len();
-        grid.for_each_near(p, q, |other| {
-            let (c, d) = edges[other as usize];
-            let (r, s) = ends(other as usize);
-            let apart = a != c && a != d && b != c && b != d;
-            if apart && segments_touch(p, q, r, s) {
-                crossing.push((c, d));
-            }
-        });
-        if crossing.len() > before {
-            crossing.push((a, b));
+    cells.for_each_pair(|i, j| {
+        let ((a, b), (c, d)) = (edges[i as usize], edges[j as usize]);
+        let ((p, q), (r, s)) = (ends(i as usize), ends(j as usize));
+        let apart = a != c && a != d && b != c && b != d;
+        if apart && segments_touch(p, q, r, s) {
+            crossing.extend([(a, b), (c, d)]);
         }
-        grid.push(p, q);
-    }
+    });
     crossing.sort_unstable();
     crossing.dedup();
     crossing

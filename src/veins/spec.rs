@@ -35,7 +35,7 @@ parameters! {
         /// How veins are made.
         algorithm: choice(Algorithm, Algorithm::AuxinOpen),
         /// Times all lengths of grown veins, the radius of the finest included; darts are as many more as
-        /// there is room for. 0.36 gives a beech the areoles of a real one: 10 mm of vein to the mm².
+        /// there is room for. 0.43 gives a beech the areoles of a real one: 10 mm of vein to the mm².
         scale: number(1.0, 0.1..=10.0, ""),
         /// Auxin darts thrown per step at full size; more gives a denser pattern.
         spawn_rate: number(60.0, 0.0..=100_000.0, "darts/step"),

@@ -22,6 +22,7 @@ use super::callers::{self, Callers, Ranges, unit};
 use super::calls::Calls;
 use super::extend::Nodes;
 use super::field::Field;
+use super::horizon::Horizon;
 use super::neighbours::{Around, SECTORS};
 use super::open;
 use crate::growth::{GrowingBlade, Metric};
@@ -49,6 +50,7 @@ struct State {
 /// The living sources and whom they call.
 pub(super) struct Sources {
     field: Field<State>,
+    horizon: Horizon,
     ranges: Ranges,
     calls: Calls,
     tags: Vec<Tag>,
@@ -65,6 +67,7 @@ impl Sources {
     pub(super) fn new(spec: &VeinSpec, blade: &GrowingBlade) -> Self {
         Self {
             field: Field::new(blade.mature().bounds()),
+            horizon: Horizon::new(blade.mature().outline()),
             ranges: Ranges::new(spec),
             calls: Calls::default(),
             tags: Vec::new(),
@@ -136,6 +139,7 @@ impl Callers for Sources {
     }
 
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
+        self.horizon.follow(metric);
         let around = self.look_around(p, nodes, metric);
         let least2 = around.least2();
         let state = State { around, tag: NONE };
@@ -152,6 +156,7 @@ impl Callers for Sources {
 
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
         self.calls.begin(nodes.len());
+        self.horizon.follow(metric);
         let at = At { blade, step, nodes };
         let ranges = self.ranges;
         let (kill2, search2) = (ranges.kill2(metric), ranges.search2(metric));

@@ -129,10 +129,6 @@ impl<S> Field<S> {
         }
     }
 
-    pub(super) fn bounds(&self) -> Rect {
-        self.bounds
-    }
-
     /// Sources that ever were.
     pub(super) fn len(&self) -> usize {
         self.slots.len()

@@ -20,6 +20,7 @@ mod convergence;
 mod extend;
 mod field;
 mod habit;
+mod horizon;
 mod neighbours;
 mod open;
 mod sources;

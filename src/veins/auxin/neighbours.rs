@@ -7,6 +7,10 @@
 //! node changes them in constant time, and the nodes themselves need to be searched only when one of
 //! the other sixths holds a nearer node that is not itself in the way.
 //!
+//! In a sixth without a node, nodes beside it stand in the way of all that is far, or the blade ends: from
+//! where on is kept in place of the distance of a node, so that neither a search nor a source waits for
+//! what cannot matter.
+//!
 //! Source: G. Toussaint, "The relative neighbourhood graph of a finite planar set", Pattern
 //! Recognition 12, 1980; the six cones are A. Yao's (SIAM J. Comput. 11, 1982). Between nodes at one
 //! distance the one with the lower id counts as nearer.
@@ -15,6 +19,7 @@ use glam::DVec2;
 
 use super::NONE;
 use super::extend::Nodes;
+use super::horizon::{Horizon, WEDGES};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
@@ -24,7 +29,7 @@ pub(super) const SECTORS: usize = 6;
 /// The nearest node in each sixth of the circle around a source.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Around {
-    /// Squared distances; infinite where there is none.
+    /// Squared distances; where there is no node, from where on none can be a relative neighbour.
     near2: [f64; SECTORS],
     nodes: [NodeId; SECTORS],
     /// Which of them are relative neighbours, a bit for each.
@@ -64,7 +69,8 @@ impl Around {
 
     /// The squared distance of the nearest node; infinite without one.
     pub(super) fn least2(&self) -> f64 {
-        self.near2.iter().copied().fold(f64::INFINITY, f64::min)
+        let there = self.near2.iter().zip(&self.nodes).filter(|&(_, &node)| node != NONE);
+        there.fold(f64::INFINITY, |least2, (&near2, _)| least2.min(near2))
     }
 
     /// No node as far as this (squared) changes anything.
@@ -72,20 +78,45 @@ impl Around {
         self.near2.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Whether nothing farther than a distance can be a relative neighbour of a source at `s` among
-    /// nodes within `low` and `high` (stretched coordinates, relative to the source).
-    pub(super) fn is_settled(&self, distance: f64, low: DVec2, high: DVec2) -> bool {
-        (0..SECTORS).all(|k| {
-            if self.near2[k] <= distance * distance {
-                return true;
+    /// Whether nothing farther than a distance can be a relative neighbour.
+    pub(super) fn is_settled(&self, distance: f64) -> bool {
+        self.near2.iter().all(|&near2| near2 <= distance * distance)
+    }
+
+    /// Finds out, for the sixths that have no node, from where on those beside them stand in the way, or
+    /// the blade ends: `ends` tells that for each wedge.
+    pub(super) fn shade(
+        &mut self,
+        s: DVec2,
+        horizon: &Horizon,
+        ends: &[f64; WEDGES],
+        nodes: &Nodes,
+        metric: Metric,
+    ) {
+        const WEDGES_A_SECTOR: usize = WEDGES / SECTORS;
+        for k in 0..SECTORS {
+            if self.nodes[k] != NONE {
+                continue;
             }
-            // How far the box reaches into the sixth: no point of that lies farther than its
-            // projection on the middle of the sixth over cos 30°.
-            let middle = MIDDLES[k];
-            let reach = (middle.x * if middle.x > 0.0 { high.x } else { low.x })
-                + (middle.y * if middle.y > 0.0 { high.y } else { low.y });
-            reach * 1.1548 < distance
-        })
+            let beside = |turns: [usize; 2]| {
+                let ids = turns.map(|turn| self.nodes[(k + turn) % SECTORS]);
+                ids.map(|id| (id != NONE).then(|| metric.between(s, nodes.position(id))))
+            };
+            let (clockwise, anticlockwise) = (beside([5, 4]), beside([1, 2]));
+            // What is in the way along the far ray of a wedge is in the way in all of it.
+            let least2 = |there: [Option<DVec2>; 2], ray: DVec2| {
+                let all = there.into_iter().flatten().map(|way| shaded_from2(way, ray));
+                all.fold(f64::INFINITY, f64::min)
+            };
+            let from2 = |wedge: usize| {
+                (ends[wedge] * ends[wedge])
+                    .min(least2(clockwise, horizon.ray(wedge + 1)))
+                    .min(least2(anticlockwise, horizon.ray(wedge)))
+            };
+            let wedges = k * WEDGES_A_SECTOR..(k + 1) * WEDGES_A_SECTOR;
+            let farthest2 = wedges.map(from2).fold(0.0, f64::max);
+            self.near2[k] = self.near2[k].min(farthest2);
+        }
     }
 
     /// Takes note of a node at `p`, as far from the source at `s` as `distance2` (squared).
@@ -108,6 +139,8 @@ impl Around {
         for k in others {
             let (other2, other) = (self.near2[k], self.nodes[k]);
             if other == NONE {
+                // One may stand there that was left out.
+                in_doubt |= other2 < distance2;
                 continue;
             }
             let other_is_nearer = (other2, other) < (distance2, node);
@@ -154,18 +187,21 @@ impl Around {
     }
 }
 
-/// Directions of the middles of the sixths.
-const MIDDLES: [DVec2; SECTORS] = {
-    const C: f64 = 0.866_025_403_784_438_6;
-    [
-        DVec2::new(C, 0.5),
-        DVec2::new(0.0, 1.0),
-        DVec2::new(-C, 0.5),
-        DVec2::new(-C, -0.5),
-        DVec2::new(0.0, -1.0),
-        DVec2::new(C, -0.5),
-    ]
-};
+/// From which squared distance on a node, seen at `r` from the source, stands in the way of all nodes
+/// along a ray.
+fn shaded_from2(r: DVec2, ray: DVec2) -> f64 {
+    // Beyond 89 degrees it would be too far to be of use, and rounding would tell.
+    const LEAST_COSINE: f64 = 0.0175;
+    // Far above rounding.
+    const SLACK: f64 = 1.0 + 1e-4;
+    let (distance2, along) = (r.length_squared(), r.dot(ray));
+    if along <= 0.0 || along * along < LEAST_COSINE * LEAST_COSINE * distance2 {
+        return f64::INFINITY;
+    }
+    // Nearer to the node than to the source, and farther from the source than the node.
+    let bisector = distance2 / (2.0 * along);
+    (bisector * bisector).max(distance2) * SLACK
+}
 
 /// The sixth of the circle that a vector points into.
 fn sector(v: DVec2) -> usize {

@@ -10,15 +10,18 @@
 //! vein across the margin or another vein is halved twice, then left out.
 
 mod faces;
+mod net;
+mod room;
 
 use faces::Faces;
 use glam::DVec2;
+use net::Net;
+use room::{Moved, Room};
 
 use super::VeinSpec;
 use super::chains::{Chain, Chains, Edge};
 use super::graph::{NodeId, VeinGraph};
 use super::widths;
-use crate::geometry::polygon::{nearest_on_segment, segments_touch};
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 
@@ -40,97 +43,125 @@ const LEAST_CHAIN: f64 = 0.35;
 const LEAST_GAP: f64 = 0.02;
 
 /// A graph in `margin` relaxed as `veins.relaxation` says; as it is at 0. Veins pull with their widths
-/// after the settings, those of a tree where widths come from the flow.
+/// after the settings, those of a tree where widths come from the flow. `swept` is called after every
+/// sweep.
 #[must_use]
-pub fn relaxed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph) -> VeinGraph {
+pub fn relaxed(
+    spec: &VeinSpec,
+    margin: &Margin,
+    graph: VeinGraph,
+    swept: impl FnMut(),
+) -> VeinGraph {
     if spec.relaxation == 0 || graph.is_empty() {
         return graph;
     }
     let (radii, _) = widths::of_tree(spec, &graph, spec.tip_radius_mm);
     let relaxation = Relaxation::new(&graph, &radii, margin.lines(), spec);
-    let mut places = relaxation.run(spec.relaxation).into_iter();
+    let mut places = relaxation.run(spec.relaxation, swept).into_iter();
     graph.mapped(|old| places.next().unwrap_or(old))
 }
 
 struct Relaxation {
-    chains: Chains,
-    /// The pull of each chain: its mean radius.
-    pulls: Vec<f64>,
+    net: Net,
+    room: Room,
     /// Nodes that stay.
     pinned: Vec<bool>,
-    /// Both ends of every edge.
-    edges: Vec<[NodeId; 2]>,
-    margin: SegmentIndex,
-    positions: Vec<DVec2>,
+    /// The junctions that move, in the order in which they do.
+    free: Vec<NodeId>,
     step: f64,
-    faces: Option<Faces>,
+    faces: Option<(Chains, Faces)>,
     /// How strongly faces press, in pulls of the mean vein.
     pressure: f64,
+    star: Star,
+}
+
+/// A junction on its way; kept for its memory.
+#[derive(Default)]
+struct Star {
+    /// The nodes that go along, and the share of the way that each goes.
+    moves: Vec<(NodeId, f64)>,
+    /// Where they were.
+    back: Vec<DVec2>,
+    edges: Vec<Moved>,
+    /// From the junction to the other ends of its veins.
+    ways: Vec<DVec2>,
 }
 
 impl Relaxation {
     fn new(graph: &VeinGraph, radii: &[f64], margin: SegmentIndex, spec: &VeinSpec) -> Self {
         let step = spec.node_step_mm;
         let chains = Chains::of(graph);
-        let positions = graph.positions().to_vec();
         let pulls: Vec<f64> = chains.chains.iter().map(|chain| pull(graph, radii, chain)).collect();
         let mean_pull = pulls.iter().sum::<f64>() / pulls.len().max(1) as f64;
         let pressure = spec.areole_pressure * mean_pull;
-        let faces = (pressure > 0.0).then(|| Faces::of(&chains, &positions));
-        let is_end: Vec<bool> = chains.at.iter().map(|at| at.len() == 1).collect();
         let is_pinned = |node: NodeId| {
+            let is_end = chains.at[node as usize].len() == 1;
             graph.parent(node).is_none()
-                || graph.rank(node).is_some_and(|rank| rank.order <= 1 || is_end[node as usize])
-                || margin.nearest(positions[node as usize], step).is_some()
+                || graph.rank(node).is_some_and(|rank| rank.order <= 1 || is_end)
+                || margin.nearest(graph.positions()[node as usize], step).is_some()
         };
-        let pinned = (0..graph.len() as NodeId).map(is_pinned).collect();
-        let joins = graph.joins().iter().copied();
-        let edges = graph.edges().chain(joins).map(|(a, b)| [a, b]).collect();
-        Self { chains, pulls, pinned, edges, margin, positions, step, faces, pressure }
+        let net = Net::new(graph, &chains, &pulls);
+        let mut pinned = vec![false; graph.len()];
+        for node in 0..graph.len() as NodeId {
+            pinned[net.number(node) as usize] = is_pinned(node);
+        }
+        let junctions = chains.junctions().map(|node| net.number(node));
+        let free = junctions.filter(|&node| !pinned[node as usize]).collect();
+        let faces = (pressure > 0.0).then(|| {
+            let chains = net.renumbered(chains);
+            let faces = Faces::of(&chains, &net.positions);
+            (chains, faces)
+        });
+        let room = Room::new(margin, step);
+        Self { net, room, pinned, free, step, faces, pressure, star: Star::default() }
     }
 
-    fn run(mut self, sweeps: u64) -> Vec<DVec2> {
-        let free: Vec<NodeId> =
-            self.chains.junctions().filter(|&node| !self.pinned[node as usize]).collect();
+    fn run(mut self, sweeps: u64, mut swept: impl FnMut()) -> Vec<DVec2> {
+        let free = std::mem::take(&mut self.free);
         for _ in 0..sweeps {
-            if let Some(faces) = &mut self.faces {
-                faces.measure(&self.chains, &self.positions);
+            if let Some((chains, faces)) = &mut self.faces {
+                faces.measure(chains, &self.net.positions);
             }
-            let at = |node: NodeId| self.positions[node as usize];
-            let near = SegmentIndex::new(self.edges.iter().map(|&[a, b]| (at(a), at(b))).collect());
+            self.room.begin_sweep(&self.net);
             for &junction in &free {
                 let full = self.displacement(junction);
-                let _ =
-                    [1.0, 0.5, 0.25].iter().any(|&share| self.shift(junction, full * share, &near));
+                if full == DVec2::ZERO {
+                    continue;
+                }
+                self.gather(junction);
+                let _ = [1.0, 0.5, 0.25].iter().any(|&share| self.shift(full * share));
             }
+            swept();
         }
-        self.positions
+        self.net.places()
     }
 
-    /// Towards balance, by half a step at most: the index of a sweep knows edges as they were when
-    /// it began.
-    fn displacement(&self, junction: NodeId) -> DVec2 {
-        let here = self.positions[junction as usize];
+    /// Towards balance, by half a step at most: in a sweep edges are looked for around where they were
+    /// when it began.
+    fn displacement(&mut self, junction: NodeId) -> DVec2 {
+        let Self { net, faces, star, .. } = self;
+        let here = net.place(junction);
         let (mut force, mut pulls) = (DVec2::ZERO, 0.0);
-        let mut ways: Vec<DVec2> = Vec::with_capacity(3);
-        for &number in &self.chains.at[junction as usize] {
-            let nodes = &self.chains.chains[number as usize].nodes;
+        star.ways.clear();
+        for &chain in net.chains_at(junction) {
+            let nodes = net.chain(chain);
             let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
             if first == last {
                 continue;
             }
             let other = if first == junction { last } else { first };
-            let towards = self.positions[other as usize] - here;
-            let pull = self.pulls[number as usize];
+            let towards = net.place(other) - here;
+            let pull = net.pull(chain);
             force += towards.normalize_or_zero() * pull;
             pulls += pull;
-            ways.push(towards);
+            star.ways.push(towards);
         }
-        if let Some(faces) = &self.faces {
-            force += faces.push(&self.chains, junction, &self.positions) * self.pressure;
+        if let Some((chains, faces)) = faces {
+            force += faces.push(chains, junction, &net.positions) * self.pressure;
         }
         // Towards the end of a vein it goes a share of its length at most.
-        let nearest = ways
+        let nearest = star
+            .ways
             .iter()
             .filter(|towards| towards.dot(force) > 0.0)
             .map(|towards| (towards.length() - LEAST_CHAIN * self.step).max(0.0))
@@ -142,20 +173,16 @@ impl Relaxation {
         }
     }
 
-    /// Moves a junction by `by`, and the nodes along its veins with it, unless they would touch
-    /// something. Whether it did.
-    fn shift(&mut self, junction: NodeId, by: DVec2, near: &SegmentIndex) -> bool {
-        if by == DVec2::ZERO {
-            return true;
-        }
-        let mut back = vec![(junction, self.positions[junction as usize])];
-        let mut edges = Vec::new();
-        let mut moves = vec![(junction, 1.0)];
-        for &number in &self.chains.at[junction as usize] {
-            let nodes = &self.chains.chains[number as usize].nodes;
-            let length = |pair: &[NodeId]| {
-                self.positions[pair[0] as usize].distance(self.positions[pair[1] as usize])
-            };
+    /// Finds out what a junction takes along.
+    fn gather(&mut self, junction: NodeId) {
+        let Star { mut moves, mut back, mut edges, ways } = std::mem::take(&mut self.star);
+        let net = &self.net;
+        moves.clear();
+        edges.clear();
+        moves.push((junction, 1.0));
+        for &chain in net.chains_at(junction) {
+            let nodes = net.chain(chain);
+            let length = |pair: &[NodeId]| net.place(pair[0]).distance(net.place(pair[1]));
             edges.extend(nodes.windows(2).map(|pair| ([pair[0], pair[1]], length(pair))));
             if nodes[0] == nodes[nodes.len() - 1] {
                 // A loop back to the junction keeps its place; only its two ends move.
@@ -163,11 +190,23 @@ impl Relaxation {
             }
             self.follow(nodes, junction, &mut moves);
         }
-        back.extend(moves[1..].iter().map(|&(node, _)| (node, self.positions[node as usize])));
-        moves.iter().for_each(|&(node, share)| self.positions[node as usize] += by * share);
-        let sound = edges.iter().all(|&(ends, length)| self.is_sound(ends, length, near));
+        back.clear();
+        back.extend(moves.iter().map(|&(node, _)| net.place(node)));
+        self.star = Star { moves, back, edges, ways };
+    }
+
+    /// Moves the junction that was gathered by `by`, and the nodes along its veins with it, unless they
+    /// would touch something. Whether it did.
+    fn shift(&mut self, by: DVec2) -> bool {
+        let Self { net, room, star, .. } = self;
+        for &(node, share) in &star.moves {
+            net.positions[node as usize] += by * share;
+        }
+        let sound = room.is_sound(&star.edges, net);
         if !sound {
-            back.into_iter().for_each(|(node, p)| self.positions[node as usize] = p);
+            for (&(node, _), &p) in star.moves.iter().zip(&star.back) {
+                net.positions[node as usize] = p;
+            }
         }
         sound
     }
@@ -182,7 +221,7 @@ impl Relaxation {
             moves.extend((1..=last).map(|i| (away(i), 1.0)));
             return;
         }
-        let at = |i: usize| self.positions[away(i) as usize];
+        let at = |i: usize| self.net.place(away(i));
         let end = (1..last).find(|&i| self.pinned[away(i) as usize]).unwrap_or(last);
         let total: f64 = (0..end).map(|i| at(i).distance(at(i + 1))).sum();
         let mut along = 0.0;
@@ -194,37 +233,8 @@ impl Relaxation {
 
     /// Whether a node is the free end of a vein that may move.
     fn drifts(&self, node: NodeId) -> bool {
-        self.chains.at[node as usize].len() == 1 && !self.pinned[node as usize]
+        self.net.chains_at(node).len() == 1 && !self.pinned[node as usize]
     }
-
-    /// Whether an edge that was `old` long may be where it is.
-    fn is_sound(&self, [a, b]: [NodeId; 2], old: f64, near: &SegmentIndex) -> bool {
-        let at = |node: NodeId| self.positions[node as usize];
-        let (p, q) = (at(a), at(b));
-        let length = p.distance(q);
-        if length < old && (length < old * LEAST_SHRINK || length < self.step * LEAST_EDGE) {
-            return false;
-        }
-        let touches = |other: usize| {
-            let [c, d] = self.edges[other];
-            let Some(hub) = [a, b].into_iter().find(|&node| node == c || node == d) else {
-                return segments_touch(p, q, at(c), at(d));
-            };
-            let mine = if hub == a { b } else { a };
-            let theirs = if hub == c { d } else { c };
-            // The edge itself, or a second one between the same nodes.
-            mine != theirs && gap(at(hub), at(mine), at(theirs)) < LEAST_GAP
-        };
-        let reach = DVec2::splat(self.step);
-        !self.margin.touches(p, q) && !near.any_near(p.min(q) - reach, p.max(q) + reach, touches)
-    }
-}
-
-/// How far two edges from `hub` keep apart, as a share of the shorter one.
-fn gap(hub: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let apart =
-        a.distance(nearest_on_segment(hub, b, a)).min(b.distance(nearest_on_segment(hub, a, b)));
-    apart / hub.distance(a).min(hub.distance(b))
 }
 
 /// The mean radius along a chain: an edge is as wide as its younger node, a join as its thinner end.

@@ -40,7 +40,7 @@ fn a_veinlet_goes_along_whole() {
     let end = graph.sprout(fork, DVec2::new(0.0, 28.0));
     graph.set_rank(end, Rank { order: 3, kind: VeinKind::Tertiary });
     let tip = graph.sprout(fork, DVec2::new(1.0, 24.0));
-    let places = Relaxation::new(&graph, &[1.0; 4], margin().lines(), &stepping()).run(20);
+    let places = Relaxation::new(&graph, &[1.0; 4], margin().lines(), &stepping()).run(20, || ());
     let [fork, tip] = [fork, tip].map(|node| places[node as usize]);
     assert!(fork.x > 0.1, "pulled towards the veinlet: {fork}");
     assert!((tip - fork).distance(DVec2::X) < 1e-9, "{fork} {tip}");
@@ -87,8 +87,8 @@ fn small_faces_press_and_large_ones_give_way() {
 fn equal_veins_meet_at_120_degrees() {
     let graph = tee();
     let mut relaxation = Relaxation::new(&graph, &[1.0; 7], margin().lines(), &stepping());
-    relaxation.margin = SegmentIndex::new(Vec::new());
-    let positions = relaxation.run(400);
+    relaxation.room.margin = SegmentIndex::new(Vec::new());
+    let positions = relaxation.run(400, || ());
     let hub = positions[2];
     let angle = (positions[6] - hub).angle_to(positions[4] - hub).to_degrees().abs();
     assert!((angle - 120.0).abs() < 0.1, "{angle} at {hub}");
@@ -104,7 +104,7 @@ fn a_wide_vein_holds_its_course() {
     let widths = [0.1, 0.1, 1.0, 1.0, 1.0, 1.0, 1.0];
     let mut widths = widths.to_vec();
     widths[2] = 0.1;
-    let positions = Relaxation::new(&graph, &widths, margin().lines(), &stepping()).run(5);
+    let positions = Relaxation::new(&graph, &widths, margin().lines(), &stepping()).run(5, || ());
     assert!(positions[2].distance(graph.positions()[2]) < 0.6, "{}", positions[2]);
 }
 
@@ -114,19 +114,19 @@ fn roots_and_guided_veins_of_the_first_order_stay() {
     for node in 0..3 {
         graph.set_rank(node, Rank { order: 1, kind: VeinKind::Primary });
     }
-    assert_eq!(relaxed(&relaxing(5), &margin(), graph.clone()), graph);
-    assert_eq!(relaxed(&relaxing(0), &margin(), tee()), tee());
+    assert_eq!(relaxed(&relaxing(5), &margin(), graph.clone(), || ()), graph);
+    assert_eq!(relaxed(&relaxing(0), &margin(), tee(), || ()), tee());
 }
 
 #[test]
 fn a_vein_in_the_way_stops_a_junction() {
     let mut graph = tee();
-    let free = relaxed(&relaxing(60), &margin(), graph.clone()).positions()[2];
+    let free = relaxed(&relaxing(60), &margin(), graph.clone(), || ()).positions()[2];
     assert!(free.y < 29.0, "{free}");
     // A bar across the way, hung up on the left.
     let far = graph.sprout(0, DVec2::new(-8.0, 20.5));
     let up = graph.sprout(far, DVec2::new(-8.0, 29.6));
     graph.sprout(up, DVec2::new(-0.05, 29.6));
-    let stopped = relaxed(&relaxing(60), &margin(), graph).positions()[2];
+    let stopped = relaxed(&relaxing(60), &margin(), graph, || ()).positions()[2];
     assert!(stopped.y > 29.5, "{stopped}");
 }

@@ -122,6 +122,7 @@ impl Sources {
     ) -> Vec<u32> {
         if self.deforms {
             // The blade may have grown since its neighbours were looked up.
+            self.horizon.follow(metric);
             for source in self.reached.clone() {
                 let Some(i) = self.field.slot(source) else { continue };
                 let around = self.look_around(self.field.place(i), nodes, metric);

@@ -14,15 +14,19 @@ impl Sources {
     /// Looks the neighbours of a place up from nothing.
     pub(super) fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
         let search = self.ranges.search(metric);
-        let bounds = self.field.bounds();
         let mut around = Around::EMPTY;
-        let (low, high) = metric.corners_from(s, bounds);
+        let mut ends = None;
         nodes.grid().for_each_outwards(
             &mut around,
             s,
             |around, clear| {
                 let clear = metric.clearance(s, clear);
-                clear <= search && !around.is_settled(clear, low, high)
+                if clear > search || around.is_settled(clear) {
+                    return false;
+                }
+                let ends = ends.get_or_insert_with(|| self.horizon.distances(s, metric));
+                around.shade(s, &self.horizon, ends, nodes, metric);
+                !around.is_settled(clear)
             },
             |around, node, p| {
                 let distance2 = metric.distance_squared(s, p);

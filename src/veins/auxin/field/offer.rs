@@ -7,7 +7,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{Field, Hit, News, Source, Told};
+use super::{DEAD, Field, Hit, News, Source, Told};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
@@ -20,6 +20,10 @@ const A_BATCH: usize = 1 << 16;
 /// One in so many sources found says where to cut for the threads.
 const SAMPLE: usize = 32;
 
+/// From so many new nodes on it is worth while to find out how far they may matter where there is no
+/// reach.
+const WORTH_BOUNDING: usize = 32;
+
 /// What some new nodes found. Longer than its contents, so that the walk can write without asking.
 #[derive(Debug, Default)]
 pub(super) struct Finds {
@@ -28,6 +32,14 @@ pub(super) struct Finds {
 }
 
 impl Finds {
+    fn add(&mut self, hit: Hit) {
+        match self.buffer.get_mut(self.len) {
+            Some(place) => *place = hit,
+            None => self.buffer.push(hit),
+        }
+        self.len += 1;
+    }
+
     fn hits(&self) -> &[Hit] {
         &self.buffer[..self.len]
     }
@@ -88,6 +100,7 @@ impl<S: Send + Sync> Field<S> {
     ) -> Vec<u32> {
         // Without a reach what is found would fill the memory.
         let threads = if search.is_finite() { rayon::current_num_threads() } else { 1 };
+        let (search, far) = self.bounded(search, fresh.len(), metric);
         let threads = threads.min(fresh.len() / A_THREAD).max(1);
         let mut finds = std::mem::take(&mut self.finds);
         finds.resize_with(threads.max(finds.len()), Finds::default);
@@ -106,6 +119,7 @@ impl<S: Send + Sync> Field<S> {
             finds.len = 0;
             for (k, &p) in fresh.iter().enumerate() {
                 self.find(first + k as NodeId, p, search, metric, finds);
+                self.find_far(&far, first + k as NodeId, p, search, metric, finds);
                 if finds.len > A_BATCH || k + 1 == fresh.len() {
                     let mut all = Part {
                         first: 0,
@@ -121,6 +135,52 @@ impl<S: Send + Sync> Field<S> {
         self.finds = finds;
         self.settle_news();
         std::mem::take(&mut self.news.marked)
+    }
+
+    /// Without a reach: a distance within which new nodes matter to nearly all sources, and the slots of
+    /// the sources to which farther ones matter, too.
+    fn bounded(&self, search: f64, fresh: usize, metric: Metric) -> (f64, Vec<u32>) {
+        if search.is_finite() || metric.is_warped() || fresh < WORTH_BOUNDING {
+            return (search, Vec::new());
+        }
+        let mut bounds2: Vec<f64> =
+            self.bound2.iter().copied().filter(|&bound2| bound2 != DEAD).collect();
+        bounds2.sort_unstable_by(f64::total_cmp);
+        let size = self.bounds.size() * metric.stretch;
+        let sources = bounds2.len() as f64;
+        // What a new node has to look at: the sources in the box around it, and all that are far.
+        let cost = |bound2: f64, far: usize| {
+            let share = 4.0 * bound2 / (size.x * size.y);
+            far as f64 + sources * share.min(1.0)
+        };
+        let shares = [50, 75, 88, 94, 97, 99, 100];
+        let tried = shares.map(|percent| {
+            let upto = (bounds2.len() * percent).div_ceil(100);
+            let bound2 = if upto == 0 { 0.0 } else { bounds2[upto - 1] };
+            (cost(bound2, bounds2.len() - upto), bound2)
+        });
+        let (_, bound2) = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        let is_far = |&slot: &u32| self.bound2[slot as usize] > bound2;
+        // Rounding must leave none out.
+        (bound2.sqrt() * (1.0 + 1e-9), (0..self.bound2.len() as u32).filter(is_far).collect())
+    }
+
+    /// Collects the sources among `far` to which a node matters that lies beyond the search.
+    fn find_far(
+        &self,
+        far: &[u32],
+        node: NodeId,
+        p: DVec2,
+        search: f64,
+        metric: Metric,
+        finds: &mut Finds,
+    ) {
+        for &slot in far {
+            let distance2 = metric.distance_squared(self.places[slot as usize], p);
+            if distance2 < self.bound2[slot as usize] && distance2 > search * search {
+                finds.add(Hit { slot, node, distance2 });
+            }
+        }
     }
 
     /// Collects the sources to which a node matters.
@@ -156,9 +216,7 @@ impl<S: Send + Sync> Field<S> {
     ) {
         let distance2 = metric.distance_squared(self.places[slot], p);
         if distance2 < self.bound2[slot] && distance2 <= limit2 {
-            finds.buffer.truncate(finds.len);
-            finds.buffer.push(Hit { slot: slot as u32, node, distance2 });
-            finds.len += 1;
+            finds.add(Hit { slot: slot as u32, node, distance2 });
         }
     }
 

@@ -90,6 +90,7 @@ pub mod observer;
 pub mod parameter;
 pub mod point_list;
 pub mod seed;
+mod spelling;
 pub mod units;
 
 pub mod geometry;

@@ -1,7 +1,8 @@
 //! Leaves that come with `venation`: one TOML file each in `presets/`, embedded in the program. Species
 //! ([`PRESETS`]) and, beside them, the lobed shapes of Garg's figures ([`FIGURES`]).
 
-use crate::document::{self, Document, DocumentError};
+use crate::document::{Document, DocumentError};
+use crate::spelling;
 
 /// A leaf that comes with `venation`.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +84,7 @@ pub fn find(name: &str) -> Option<&'static Preset> {
 #[must_use]
 pub fn nearest(name: &str) -> Option<&'static str> {
     // Looser than for keys: names are short, and a slip weighs more in them.
-    document::nearest(name, 0.5, all().flat_map(|preset| [preset.name, preset.common]))
+    spelling::nearest(name, 0.5, all().flat_map(|preset| [preset.name, preset.common]))
 }
 
 impl Preset {

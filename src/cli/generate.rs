@@ -111,7 +111,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if args.run.dry_run {
         return plan(args, context, &batch, &todo);
     }
-    tell_shortfalls(&document, context, &todo)?;
+    tell_shortfalls(&document, context, &todo);
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
     let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
@@ -168,17 +168,10 @@ impl Batch {
 }
 
 /// Says which leaves are perturbed by less than `vary` asks for.
-fn tell_shortfalls(
-    document: &Document,
-    context: &Context<'_>,
-    todo: &[(&Job, Overwrite)],
-) -> Result<(), Failure> {
-    let Some(wanted) = document.vary else { return Ok(()) };
-    let mut short = Vec::new();
-    for (job, _) in todo {
-        let varied = document.varied(Seed(job.seed))?;
-        short.extend(varied.filter(|percent| *percent < wanted));
-    }
+fn tell_shortfalls(document: &Document, context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
+    let Some(wanted) = document.vary else { return };
+    let varied = todo.iter().filter_map(|(job, _)| job.varied);
+    let short: Vec<f64> = varied.filter(|percent| *percent < wanted).collect();
     let why = "with more, margins would cross themselves";
     match &short[..] {
         [] => {}
@@ -191,7 +184,6 @@ fn tell_shortfalls(
             todo.len()
         )),
     }
-    Ok(())
 }
 
 /// Says what a run would write and what it would leave alone.

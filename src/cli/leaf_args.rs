@@ -268,7 +268,15 @@ fn insert_shape(name: &str, document: &mut Document) -> Result<(), Failure> {
 
 /// One leaf of a document, its name checked for use in file names.
 pub(crate) fn resolve(document: &Document, seed: u64) -> Result<LeafSpec, Failure> {
-    let spec = document.resolve(Seed(seed))?;
+    Ok(resolve_varied(document, seed)?.0)
+}
+
+/// The same, and by how many percent its margin is perturbed where that was asked for.
+pub(crate) fn resolve_varied(
+    document: &Document,
+    seed: u64,
+) -> Result<(LeafSpec, Option<f64>), Failure> {
+    let (spec, varied) = document.resolve_varied(Seed(seed))?;
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
     if spec.name.is_empty() || spec.name.len() > 100 || !spec.name.chars().all(plain) {
         return Err(Failure::Input(format!(
@@ -276,5 +284,5 @@ pub(crate) fn resolve(document: &Document, seed: u64) -> Result<LeafSpec, Failur
             spec.name
         )));
     }
-    Ok(spec)
+    Ok((spec, varied))
 }

@@ -21,9 +21,9 @@ use std::sync::LazyLock;
 use crate::margin::MarginSpec;
 use crate::parameter::{Parameter, Parameters};
 use crate::spec::LeafSpec;
+use crate::spelling;
 pub use schema::schema;
 pub use value::Value;
-pub(crate) use value::nearest;
 
 /// Every knob of a leaf, in the order in which files show them.
 static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(LeafSpec::parameters);
@@ -185,17 +185,20 @@ impl Document {
     ///
     /// When values that are each within their limits contradict each other.
     pub fn resolve(&self, seed: crate::seed::Seed) -> Result<LeafSpec, DocumentError> {
-        Ok(draw::resolve(self, seed)?.0)
+        Ok(self.resolve_varied(seed)?.0)
     }
 
-    /// By how many percent the margin of one leaf is perturbed: less than [`vary`](Self::vary) where it would
-    /// be none otherwise; `None` where it is taken as it stands. Costs as much as [`resolve`](Self::resolve).
+    /// The same, and by how many percent the margin is perturbed: less than [`vary`](Self::vary) where it would
+    /// be none otherwise; `None` where it is taken as it stands.
     ///
     /// # Errors
     ///
     /// As [`resolve`](Self::resolve).
-    pub fn varied(&self, seed: crate::seed::Seed) -> Result<Option<f64>, DocumentError> {
-        Ok(draw::resolve(self, seed)?.1)
+    pub fn resolve_varied(
+        &self,
+        seed: crate::seed::Seed,
+    ) -> Result<(LeafSpec, Option<f64>), DocumentError> {
+        draw::resolve(self, seed)
     }
 
     /// The document of a resolved leaf: every key given, no range left.
@@ -214,7 +217,7 @@ impl Document {
 /// The word most like a misspelt one, when one is like it at all.
 #[must_use]
 pub fn nearest_word<'a>(word: &str, words: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    nearest(word, value::LIKE_A_KEY, words)
+    spelling::nearest(word, spelling::LIKE_A_KEY, words)
 }
 
 /// How much [`Document::to_toml`] explains.

@@ -3,9 +3,10 @@
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::records::{self, find};
-use super::value::{LIKE_A_KEY, kind_in_words, nearest};
+use super::value::kind_in_words;
 use super::{Document, DocumentError, Entry, Value, parameters};
 use crate::parameter::{Kind, Parameter, RECORD};
+use crate::spelling::{LIKE_A_KEY, nearest};
 
 /// Keys of a file that are not knobs of the leaf.
 const SEED: &str = "seed";

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use super::records;
 use crate::parameter::{Kind, Parameter, Parameters};
 use crate::spec::LeafSpec;
+use crate::spelling::{LIKE_A_KEY, nearest};
 
 /// A value as a document gives it.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,23 +108,6 @@ pub(super) fn kind_in_words(kind: &Kind) -> String {
         Kind::Points => "points [[x, y], …]".into(),
         Kind::Lines => "lines of points [[[x, y], …], …]".into(),
     }
-}
-
-/// Keys and words less alike than this are no slip of the finger.
-pub(super) const LIKE_A_KEY: f64 = 0.6;
-
-/// The candidate most like `word`, when one is more like it than `least` (0 nothing in common, 1 the
-/// same).
-pub(crate) fn nearest<'a>(
-    word: &str,
-    least: f64,
-    candidates: impl Iterator<Item = &'a str>,
-) -> Option<&'a str> {
-    candidates
-        .map(|candidate| (strsim::normalized_damerau_levenshtein(word, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > least)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
 }
 
 /// The default leaf as a tree of TOML values, with one record in every list of them.

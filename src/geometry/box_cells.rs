@@ -48,8 +48,7 @@ impl BoxCells {
     #[must_use]
     pub fn new(bounds: Rect, cell: f64, boxes: impl Iterator<Item = Rect> + Clone) -> Self {
         let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell =
-            cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS);
+        let cell = bounds.cell_width(cell, MAX_CELLS);
         let count = |length: f64| (length / cell) as usize + 1;
         let mut cells = Self {
             min: bounds.min,
@@ -167,27 +166,23 @@ mod tests {
         for cell in [0.03, 0.2, 5.0] {
             let cells = BoxCells::new(bounds, cell, boxes.iter().copied());
             for asked in (0..300).map(|_| drawn(0.1)) {
-                let meets = |other: &Rect, by: f64| {
-                    other.min.cmple(asked.max + by).all() && other.max.cmpge(asked.min - by).all()
-                };
                 let mut found = Vec::new();
                 cells.for_each_meeting(asked, |id| found.push(id));
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "one told of twice");
                 let all = (0..).zip(&boxes);
                 let sure: Vec<u32> =
-                    all.filter(|(_, other)| meets(other, 0.0)).map(|(id, _)| id).collect();
+                    all.filter(|(_, other)| other.meets(asked)).map(|(id, _)| id).collect();
                 assert!(sure.iter().all(|id| found.contains(id)));
-                assert!(found.iter().all(|&id| meets(&boxes[id as usize], 1e-5)));
+                assert!(found.iter().all(|&id| boxes[id as usize].meets(asked.grown(1e-5))));
             }
             let mut pairs = Vec::new();
             cells.for_each_pair(|a, b| pairs.push((a.min(b), a.max(b))));
             pairs.sort_unstable();
             assert!(pairs.windows(2).all(|two| two[0] < two[1]), "a pair told of twice");
-            let meet = |a: Rect, b: Rect| a.min.cmple(b.max).all() && a.max.cmpge(b.min).all();
             let all = (0..400u32).flat_map(|a| (a + 1..400).map(move |b| (a, b)));
             let sure: Vec<(u32, u32)> =
-                all.filter(|&(a, b)| meet(boxes[a as usize], boxes[b as usize])).collect();
+                all.filter(|&(a, b)| boxes[a as usize].meets(boxes[b as usize])).collect();
             assert!(sure.iter().all(|pair| pairs.binary_search(pair).is_ok()));
             assert!(pairs.len() <= sure.len() + 3, "{} {}", pairs.len(), sure.len());
         }

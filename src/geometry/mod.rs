@@ -6,6 +6,7 @@ pub mod bspline;
 mod chains;
 pub mod compact;
 pub mod deviation;
+pub mod measured;
 pub mod minimise;
 pub mod noise;
 pub mod nurbs;
@@ -47,6 +48,23 @@ impl Rect {
     #[must_use]
     pub fn size(&self) -> DVec2 {
         self.max - self.min
+    }
+
+    /// Whether the two have a point in common, their borders included.
+    #[must_use]
+    pub fn meets(&self, other: Self) -> bool {
+        // Without branches: asked of all that is near.
+        (self.min.x <= other.max.x)
+            & (self.max.x >= other.min.x)
+            & (self.min.y <= other.max.y)
+            & (self.max.y >= other.min.y)
+    }
+
+    /// The least width of square cells, from `cell` on, of which at most so many lie over the box and in
+    /// one of its rows.
+    fn cell_width(&self, cell: f64, most: f64) -> f64 {
+        let size = self.size().max(DVec2::splat(f64::MIN_POSITIVE));
+        cell.max((size.x * size.y / most).sqrt()).max(size.max_element() / most)
     }
 
     /// The same, larger by `by` on every side.

@@ -26,19 +26,13 @@ pub struct SegmentGrid {
     len: u32,
 }
 
-/// The width of the cells that a grid over `bounds` has where `cell` is asked for.
-fn allowed(bounds: Rect, cell: f64) -> f64 {
-    let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-    cell.max((size.x * size.y / MAX_CELLS).sqrt()).max(size.max_element() / MAX_CELLS)
-}
-
 impl SegmentGrid {
     /// An empty grid over `bounds` with cells of about `cell`; what is outside is kept in the cells at
     /// the border.
     #[must_use]
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell = allowed(bounds, cell);
+        let cell = bounds.cell_width(cell, MAX_CELLS);
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(size.x), count(size.y));
         let heads = vec![NONE; columns * rows];
@@ -96,7 +90,7 @@ impl SegmentGrid {
     /// are.
     pub fn refine(&mut self, cell: f64, ends: impl Fn(u32) -> (DVec2, DVec2)) {
         // Asked in every step: memory for finer cells is taken only where they come.
-        if cell * 2.0 >= self.cell || allowed(self.bounds, cell) * 2.0 > self.cell {
+        if cell * 2.0 >= self.cell || self.bounds.cell_width(cell, MAX_CELLS) * 2.0 > self.cell {
             return;
         }
         let mut finer = Self::new(self.bounds, cell);

@@ -1,4 +1,4 @@
-//! Connected regions of a mask, over 4-neighbours.
+//! Connected regions of a mask, over 4 or 8 neighbours.
 
 use super::Grid;
 
@@ -12,15 +12,30 @@ pub struct Components {
 }
 
 impl Components {
-    /// The regions of `mask`.
+    /// The regions of `mask`, over 4 neighbours.
     #[must_use]
     pub fn of(mask: &Grid<bool>) -> Self {
         let (width, height) = (mask.width(), mask.height());
+        Self::over(width, height, |i| mask.values()[i], neighbours)
+    }
+
+    /// The regions of the pixels of which `mask` is true, over 8 neighbours.
+    #[must_use]
+    pub fn of_eight(width: usize, height: usize, mask: impl Fn(usize) -> bool) -> Self {
+        Self::over(width, height, mask, neighbours_of_eight)
+    }
+
+    fn over<I: Iterator<Item = usize>>(
+        width: usize,
+        height: usize,
+        mask: impl Fn(usize) -> bool,
+        around: impl Fn(usize, usize, usize) -> I,
+    ) -> Self {
         let mut labels = Grid::filled(width, height, 0u32);
         let mut areas = vec![0usize];
         let mut open = Vec::new();
         for start in 0..width * height {
-            if !mask.values()[start] || labels.values()[start] != 0 {
+            if labels.values()[start] != 0 || !mask(start) {
                 continue;
             }
             let label = areas.len() as u32;
@@ -29,8 +44,8 @@ impl Components {
             open.push(start);
             while let Some(i) = open.pop() {
                 areas[label as usize] += 1;
-                for next in neighbours(i, width, height) {
-                    if mask.values()[next] && labels.values()[next] == 0 {
+                for next in around(i, width, height) {
+                    if labels.values()[next] == 0 && mask(next) {
                         labels.values_mut()[next] = label;
                         open.push(next);
                     }
@@ -60,6 +75,19 @@ pub fn neighbours(i: usize, width: usize, height: usize) -> impl Iterator<Item =
     [left, right, above, below].into_iter().flatten()
 }
 
+/// The indices of the pixels all around pixel `i`, at its corners too.
+pub fn neighbours_of_eight(
+    i: usize,
+    width: usize,
+    height: usize,
+) -> impl Iterator<Item = usize> + Clone {
+    let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+    let columns = near(i % width, width);
+    let rows = near(i / width, height);
+    rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+        .filter(move |&next| next != i)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,5 +98,9 @@ mod tests {
         let regions = Components::of(&mask);
         assert_eq!(regions.areas, [2, 1, 3]);
         assert_eq!(regions.largest(), Some((2, 3)));
+        let regions = Components::of_eight(3, 2, |i| mask.values()[i]);
+        assert_eq!(regions.areas, [2, 4]);
+        let corner: Vec<usize> = neighbours_of_eight(3, 3, 2).collect();
+        assert_eq!(corner, [0, 1, 4]);
     }
 }

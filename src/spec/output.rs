@@ -196,14 +196,13 @@ impl OutputSpec {
             "default" => self.profile.maps().to_vec(),
             // Among others `default` stands for its words.
             words => {
-                let standard: Vec<&str> =
-                    self.profile.maps().iter().map(|map| map.word()).collect();
-                let standard = standard.join(",");
-                let spelt = |word: &str| match word.trim() {
-                    "default" => standard.clone(),
-                    word => word.to_owned(),
-                };
-                MapKind::list(&words.split(',').map(spelt).collect::<Vec<_>>().join(","))?
+                let standard = self.profile.maps().iter().map(|map| map.word());
+                let standard = standard.collect::<Vec<_>>().join(",");
+                let spelt = words.split(',').map(|word| match word.trim() {
+                    "default" => &standard[..],
+                    word => word,
+                });
+                MapKind::list(&spelt.collect::<Vec<_>>().join(","))?
             }
         };
         let formats = match self.formats.trim() {

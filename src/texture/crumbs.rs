@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 
 use super::side::SideMaps;
 use crate::raster::Grid;
+use crate::raster::components::{Components, neighbours_of_eight};
 
 /// Texels covered at least so far are seen by an alpha test at one half.
 const SEEN: u8 = 128;
@@ -15,9 +16,9 @@ const SEEN: u8 = 128;
 /// What is cut off by less than a texel and as large as this share of its piece is no crumb.
 const LARGE: f64 = 0.01;
 
-/// Finds the crumbs and clears them on both sides, the back being mirrored. `whole` is how far the
-/// texels were covered (255 for all) before there were wounds, `bare` says where only veins are left: fine ones hold
-/// one another however faint.
+/// Finds the crumbs and clears them on both sides, the back being mirrored. `whole` is how far the texels
+/// were covered (255 for all) before there were wounds, `bare` says where only veins are left: fine ones
+/// hold one another however faint.
 pub(super) fn clear(
     front: &mut SideMaps,
     back: &mut SideMaps,
@@ -42,15 +43,21 @@ fn find(
     let alpha = |i: usize| picture.values()[i][3];
     let hurt = |i: usize| alpha(i).saturating_add(1) < whole.values()[i];
     let solid = |i: usize| alpha(i) >= SEEN || (alpha(i) > 0 && bare(i % size, i / size));
-    let pieces = labelled(size, |i| whole.values()[i] >= SEEN || solid(i));
-    let parts = labelled(size, solid);
-    let connected = labelled(size, |i| alpha(i) > 0);
+    let around = |i: usize| neighbours_of_eight(i, size, size);
+    let pieces = Components::of_eight(size, size, |i| whole.values()[i] >= SEEN || solid(i));
+    let mut parts = Components::of_eight(size, size, solid);
+    let connected = Components::of_eight(size, size, |i| alpha(i) > 0);
+    let piece_and_part = |parts: &Components, i: usize| {
+        (pieces.labels.values()[i] as usize, parts.labels.values()[i] as usize)
+    };
+    let connected_at = |i: usize| connected.labels.values()[i] as usize;
 
     // The largest part of every piece.
     let mut largest = vec![0; pieces.areas.len()];
     for i in 0..size * size {
-        let (piece, part) = (pieces.labels[i] as usize, parts.labels[i] as usize);
-        if part > 0 && parts.areas[part] > parts.areas[largest[piece]] {
+        let (piece, part) = piece_and_part(&parts, i);
+        let best = largest[piece];
+        if part > 0 && (best == 0 || parts.areas[part] > parts.areas[best]) {
             largest[piece] = part;
         }
     }
@@ -59,31 +66,31 @@ fn find(
     let mut cut_off = vec![false; parts.areas.len()];
     let mut holds = vec![false; connected.areas.len()];
     for i in 0..size * size {
-        let (piece, part) = (pieces.labels[i] as usize, parts.labels[i] as usize);
+        let (piece, part) = piece_and_part(&parts, i);
         if part > 0 && largest[piece] == part {
             stays[part] = true;
-            holds[connected.labels[i] as usize] = true;
+            holds[connected_at(i)] = true;
         }
         if part > 0 {
-            cut_off[part] |= hurt(i) || around(i, size).any(&hurt);
+            cut_off[part] |= hurt(i) || around(i).any(&hurt);
         }
     }
     for i in 0..size * size {
-        let (piece, part) = (pieces.labels[i] as usize, parts.labels[i] as usize);
+        let (piece, part) = piece_and_part(&parts, i);
         if part > 0 && !stays[part] {
             let large = parts.areas[part] as f64 >= LARGE * pieces.areas[piece] as f64;
-            let hangs = holds[connected.labels[i] as usize];
+            let hangs = holds[connected_at(i)];
             stays[part] = !cut_off[part] || (large && hangs);
         }
     }
     // Faint texels go with the part that they are nearest to; those near none were a wound's rim.
-    let mut nearest = parts.labels;
+    let nearest = parts.labels.values_mut();
     let faint = |nearest: &[u32], i: usize| nearest[i] == 0 && alpha(i) > 0;
-    let borders = |&i: &usize| nearest[i] > 0 && around(i, size).any(|j| faint(&nearest, j));
+    let borders = |&i: &usize| nearest[i] > 0 && around(i).any(|j| faint(nearest, j));
     let mut queue: VecDeque<usize> = (0..size * size).filter(borders).collect();
     while let Some(i) = queue.pop_front() {
-        for next in around(i, size) {
-            if faint(&nearest, next) {
+        for next in around(i) {
+            if faint(nearest, next) {
                 nearest[next] = nearest[i];
                 queue.push_back(next);
             }
@@ -91,56 +98,17 @@ fn find(
     }
     let mut sound = vec![true; connected.areas.len()];
     for i in (0..size * size).filter(|&i| alpha(i) > 0 && nearest[i] == 0) {
-        sound[connected.labels[i] as usize] &= !hurt(i) && !around(i, size).any(&hurt);
+        sound[connected_at(i)] &= !hurt(i) && !around(i).any(&hurt);
     }
     let gone = |i: &usize| {
         let i = *i;
         alpha(i) > 0
             && match nearest[i] as usize {
-                0 => !sound[connected.labels[i] as usize],
+                0 => !sound[connected_at(i)],
                 part => !stays[part],
             }
     };
     (0..size * size).filter(gone).collect()
-}
-
-/// The regions of a mask over 8 neighbours: the number of each texel's, 0 for none, and their areas.
-struct Regions {
-    labels: Vec<u32>,
-    areas: Vec<usize>,
-}
-
-fn labelled(size: usize, mask: impl Fn(usize) -> bool) -> Regions {
-    let mut regions = Regions { labels: vec![0; size * size], areas: vec![0] };
-    let mut open = Vec::new();
-    for start in 0..size * size {
-        if regions.labels[start] != 0 || !mask(start) {
-            continue;
-        }
-        let label = regions.areas.len() as u32;
-        regions.labels[start] = label;
-        regions.areas.push(0);
-        open.push(start);
-        while let Some(i) = open.pop() {
-            regions.areas[label as usize] += 1;
-            for next in around(i, size) {
-                if regions.labels[next] == 0 && mask(next) {
-                    regions.labels[next] = label;
-                    open.push(next);
-                }
-            }
-        }
-    }
-    regions
-}
-
-/// The eight texels around one, as far as there are.
-fn around(i: usize, size: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (i % size, i / size);
-    let (columns, rows) =
-        (x.saturating_sub(1)..(x + 2).min(size), y.saturating_sub(1)..(y + 2).min(size));
-    rows.flat_map(move |row| columns.clone().map(move |column| row * size + column))
-        .filter(move |&next| next != i)
 }
 
 #[cfg(test)]

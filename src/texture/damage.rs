@@ -7,6 +7,7 @@
 
 mod disease;
 mod eaten;
+mod fall;
 
 use std::collections::VecDeque;
 
@@ -17,7 +18,6 @@ use super::tissue::smooth;
 use crate::margin::Margin;
 use crate::parameter::parameters;
 use crate::raster::Grid;
-use crate::raster::components::{Components, neighbours};
 use crate::raster::contour::contours;
 use crate::seed::{Rng, Seed, Stage};
 use crate::units::TextureFrame;
@@ -89,13 +89,6 @@ const SOUND: Wound = [FAR_MM, FAR_MM, FAR_MM, FAR_MM, FAR_MM, 0.0, 0.0];
 
 /// Far from any gap (mm).
 const FAR_MM: f32 = -10.0;
-
-/// What has fallen off lies so deep in the gap (mm).
-const FALLEN_MM: f32 = 1.0;
-
-/// What is no thicker than twice this (mm) holds nothing; so far from any gap nothing has got thinner.
-const NECK_MM: f32 = 0.15;
-const HEALTHY_MM: f32 = 1.5;
 
 /// Tissue this near to a gap has died (mm).
 const RIM_MM: f32 = 0.45;
@@ -355,58 +348,6 @@ impl<'a> Blade<'a> {
                 && self.place(node).edge > 0.0
         };
         patch.iter().filter(|entry| taken(entry)).count()
-    }
-
-    /// Takes what hangs on nothing any more, or on a thread: of every piece that the whole blade had,
-    /// the largest part stays. Primary veins hold together, however fine they are beside the nodes.
-    fn let_fall(&mut self) {
-        let (side, spacing) = (self.guide.side(), self.lattice.spacing() as f32);
-        let thread = NECK_MM.max(0.4 * spacing);
-        let tissue = |i: usize| self.place(i).edge > 0.0 && self.nodes[i][GONE] <= 0.0;
-        let holds = |i: usize| {
-            let gone = self.nodes[i][GONE];
-            let thick = gone < -HEALTHY_MM || self.place(i).edge.min(-gone) > thread;
-            tissue(i) && (thick || self.primary[i] < 1.5 * spacing)
-        };
-        let pieces = |mask: &dyn Fn(usize) -> bool| {
-            Components::of(&Grid::from_values(side, side, (0..side * side).map(mask).collect()))
-        };
-        let whole = pieces(&|i| self.place(i).edge > 0.0);
-        let mut left = pieces(&holds);
-        let mut largest = vec![0_usize; whole.areas.len()];
-        let pairs = || whole.labels.values().iter().zip(left.labels.values());
-        for (&piece, &part) in pairs().filter(|(_, part)| **part > 0) {
-            let best = &mut largest[piece as usize];
-            if *best == 0 || left.areas[part as usize] > left.areas[*best] {
-                *best = part as usize;
-            }
-        }
-        // Rims and threads go with what they are nearest to.
-        let labels = left.labels.values_mut();
-        let mut queue: VecDeque<usize> = (0..labels.len()).filter(|&i| labels[i] > 0).collect();
-        while let Some(i) = queue.pop_front() {
-            for next in neighbours(i, side, side) {
-                if labels[next] == 0 && tissue(next) {
-                    labels[next] = labels[i];
-                    queue.push_back(next);
-                }
-            }
-        }
-        let stays = |i: usize| {
-            largest[whole.labels.values()[i] as usize] == left.labels.values()[i] as usize
-        };
-        let fallen: Vec<usize> = (0..side * side).filter(|&i| tissue(i) && !stays(i)).collect();
-        for i in fallen {
-            let (x, y) = (i % side, i / side);
-            for row in y.saturating_sub(2)..(y + 3).min(side) {
-                for node in (x.saturating_sub(2)..(x + 3).min(side)).map(|x| row * side + x) {
-                    // Past the margin, too: what is read between the nodes would leave its rim.
-                    if node == i || self.place(node).edge <= 0.0 {
-                        self.nodes[node][GONE] = self.nodes[node][GONE].max(FALLEN_MM);
-                    }
-                }
-            }
-        }
     }
 
     fn apply(&mut self, patch: &[(usize, f32)], layer: usize) {

@@ -52,8 +52,9 @@ impl Place {
 /// Feature sizes of the three noises (mm): across the leaf, between secondaries, around areoles.
 const NOISE_MM: [f32; 3] = [16.0, 4.5, 1.6];
 
-/// Wounds lie on a guide with at least so many nodes a side.
-const NODES_OF_WOUNDS: usize = 512;
+/// Wounds lie on a guide with at least so many nodes a side: they have edges, and a leaf of few texels is to
+/// lose no other tissue than one of many.
+pub(super) const NODES_OF_WOUNDS: usize = 512;
 
 /// The coarse grid.
 #[derive(Debug)]
@@ -73,44 +74,20 @@ pub(super) struct Reach<'a> {
     pub speckle_mm: f64,
 }
 
+impl Reach<'_> {
+    /// Nothing spreads.
+    pub(super) const NONE: Self = Self { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
+}
+
 impl Guide {
     /// Half the texture's resolution serves: every field is smooth over two texels, or covered by
     /// the vein that it is sharp at. Past 1024 nodes a side the leaf has nothing finer to say.
-    fn side_for(size: usize) -> usize {
+    pub(super) fn side_for(size: usize) -> usize {
         (size / 2).clamp(16, 1024)
     }
 
-    /// That of the wounds, which have edges: a leaf of few texels is to lose no other tissue than one
-    /// of many.
-    pub(super) fn is_fine_enough_for_wounds(&self) -> bool {
-        self.side >= NODES_OF_WOUNDS
-    }
-
+    /// With so many nodes a side, for a texture of so many texels.
     pub(super) fn new(
-        margin: &Margin,
-        venation: &Venation,
-        frame: &TextureFrame,
-        size: usize,
-        reach: &Reach<'_>,
-        seed: u32,
-    ) -> Self {
-        Self::with_side(Self::side_for(size), margin, venation, frame, size, reach, seed)
-    }
-
-    /// As fine as wounds need it.
-    pub(super) fn of_wounds(
-        margin: &Margin,
-        venation: &Venation,
-        frame: &TextureFrame,
-        size: usize,
-        seed: u32,
-    ) -> Self {
-        // Nobody asks it for colours.
-        let reach = Reach { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
-        Self::with_side(NODES_OF_WOUNDS, margin, venation, frame, size, &reach, seed)
-    }
-
-    fn with_side(
         side: usize,
         margin: &Margin,
         venation: &Venation,
@@ -248,10 +225,10 @@ mod tests {
         let bounds = margin.bounds();
         let frame = TextureFrame::around(bounds.min, bounds.max, 0.05);
         let bare = Venation::new(VeinGraph::new(), Vec::new(), Vec::new());
-        let reach = Reach { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
         let size = 200;
-        let spacing = frame.side_mm / Guide::side_for(size) as f64;
-        let guide = Guide::new(&margin, &bare, &frame, size, &reach, 1);
+        let side = Guide::side_for(size);
+        let spacing = frame.side_mm / side as f64;
+        let guide = Guide::new(side, &margin, &bare, &frame, size, &Reach::NONE, 1);
         let edges = SegmentIndex::of_polygon(margin.outline());
         let mut nodes = Vec::new();
         for y in 0..size {

@@ -68,20 +68,27 @@ fn keep_coverage(maps: &mut SideMaps, alpha: &Grid<f32>, share: f64) {
         let scaled = ((alpha * scale).min(1.0) * full).round();
         if alpha < least { scaled.min(fails) } else { scaled }
     };
-    for (texel, &alpha) in maps.base_colour.values_mut().iter_mut().zip(alpha.values()) {
-        texel[3] = scaled(alpha, 255.0, f32::from(FAILS)) as u8;
-    }
-    for &i in &surplus {
-        let texel = &mut maps.base_colour.values_mut()[i];
-        texel[3] = texel[3].min(FAILS);
-    }
+    let byte = |alpha: f32| scaled(alpha, 255.0, f32::from(FAILS)) as u8;
+    cover(&mut maps.base_colour, alpha, byte, &surplus, FAILS);
     let Some(deep) = &mut maps.deep else { return };
     let fails = u16::from(FAILS) * 257;
-    for (texel, &alpha) in deep.base_colour.values_mut().iter_mut().zip(alpha.values()) {
-        texel[3] = scaled(alpha, 65535.0, f32::from(fails)) as u16;
+    let word = |alpha: f32| scaled(alpha, 65535.0, f32::from(fails)) as u16;
+    cover(&mut deep.base_colour, alpha, word, &surplus, fails);
+}
+
+/// Writes coverages into a picture; those of `surplus` are no greater than `fails`.
+fn cover<T: Copy + Ord>(
+    picture: &mut Grid<[T; 4]>,
+    alpha: &Grid<f32>,
+    scaled: impl Fn(f32) -> T,
+    surplus: &[usize],
+    fails: T,
+) {
+    for (texel, &alpha) in picture.values_mut().iter_mut().zip(alpha.values()) {
+        texel[3] = scaled(alpha);
     }
-    for i in surplus {
-        let texel = &mut deep.base_colour.values_mut()[i];
+    for &i in surplus {
+        let texel = &mut picture.values_mut()[i];
         texel[3] = texel[3].min(fails);
     }
 }
@@ -226,26 +233,27 @@ fn mean(block: &Block, value: impl Fn(usize) -> f32) -> f32 {
     block.iter().map(|&(i, weight)| weight * value(i)).sum::<f32>()
 }
 
-/// The mean of colours, in linear light.
+/// The mean of colours with 8 bits a channel, in linear light.
 fn light(block: &Block, value: impl Fn(usize) -> [u8; 3]) -> [u8; 3] {
-    let mut sum = LinSrgb::new(0.0, 0.0, 0.0);
-    for &(i, weight) in block.iter() {
-        let [r, g, b] = value(i);
-        sum += Srgb::new(r, g, b).into_linear::<f32>() * weight;
-    }
-    let encoded: Srgb<u8> = Srgb::from_linear(sum);
-    [encoded.red, encoded.green, encoded.blue]
+    let encoded: Srgb<u8> =
+        Srgb::from_linear(linear_mean(block, |i| Srgb::from(value(i)).into_linear()));
+    encoded.into()
 }
 
-/// The same of colours with 16 bits a channel.
+/// The same with 16 bits a channel.
 fn deep_light(block: &Block, value: impl Fn(usize) -> [u16; 3]) -> [u16; 3] {
+    let share = |i: usize| value(i).map(|word| f32::from(word) / 65535.0);
+    let encoded: Srgb<f32> =
+        Srgb::from_linear(linear_mean(block, |i| Srgb::from(share(i)).into_linear()));
+    <[f32; 3]>::from(encoded).map(word)
+}
+
+fn linear_mean(block: &Block, light: impl Fn(usize) -> LinSrgb) -> LinSrgb {
     let mut sum = LinSrgb::new(0.0, 0.0, 0.0);
     for &(i, weight) in block.iter() {
-        let [r, g, b] = value(i).map(|word| f32::from(word) / 65535.0);
-        sum += Srgb::new(r, g, b).into_linear::<f32>() * weight;
+        sum += light(i) * weight;
     }
-    let encoded: Srgb<f32> = Srgb::from_linear(sum);
-    [encoded.red, encoded.green, encoded.blue].map(word)
+    sum
 }
 
 /// The mean of directions, of unit length.

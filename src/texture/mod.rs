@@ -40,6 +40,7 @@ use crate::observer::{Observer, Progress};
 use crate::parameter::{parameters, words};
 use crate::raster::Grid;
 use crate::seed::Seed;
+use crate::spelling;
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 use damage::DamageSpec;
@@ -198,8 +199,7 @@ pub enum TextureError {
 
 fn known_maps(word: &str) -> String {
     let words = || MapKind::ALL.iter().map(|map| map.word());
-    let like = |other: &str| strsim::normalized_damerau_levenshtein(word, other);
-    match words().max_by(|a, b| like(a).total_cmp(&like(b))).filter(|near| like(near) > 0.6) {
+    match spelling::nearest(word, spelling::LIKE_A_KEY, words()) {
         Some(near) => format!("is no map; did you mean `{near}`?"),
         None => format!("is none of {}", words().collect::<Vec<_>>().join(", ")),
     }

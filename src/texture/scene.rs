@@ -12,7 +12,7 @@ use super::Paint;
 use super::band::{Band, Scratch, bands};
 use super::damage::Wounds;
 use super::fields::{Strokes, midrib};
-use super::guide::{Guide, Lattice, Reach};
+use super::guide::{Guide, Lattice, NODES_OF_WOUNDS, Reach};
 use super::map::{MapKind, MapSet};
 use super::optics::Optics;
 use super::petiole::Stalk;
@@ -109,11 +109,15 @@ impl Scene {
             Capsule { a, b, radius_a: radius, radius_b: radius }
         });
         let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], per_mm as f32);
-        let guide = Guide::new(margin, venation, &frame, size, &reach, tissue);
+        let side = Guide::side_for(size);
+        let guide = Guide::new(side, margin, venation, &frame, size, &reach, tissue);
         let hurt = !paint.damage.is_none();
         let wounds = hurt.then(|| {
-            let finer = (!guide.is_fine_enough_for_wounds())
-                .then(|| Guide::of_wounds(margin, venation, &frame, size, tissue));
+            // Nobody asks the finer one for colours.
+            let finer = (side < NODES_OF_WOUNDS).then(|| {
+                let reach = &Reach::NONE;
+                Guide::new(NODES_OF_WOUNDS, margin, venation, &frame, size, reach, tissue)
+            });
             let guide = finer.as_ref().unwrap_or(&guide);
             let lattice = Lattice { frame: &frame, side: guide.side() };
             Wounds::new(paint.damage, margin, venation, guide, &lattice, per_mm as f32, seed)

@@ -139,11 +139,11 @@ impl Surroundings {
             found.extend(nodes.windows(2).map(|pair| [pair[0], pair[1]]));
             part.windows(2).all(|pair| {
                 let (p, q) = (at(pair[0]), at(pair[1]));
+                let own = Rect::around([p, q]);
                 let touches = |&[c, d]: &[NodeId; 2]| {
                     let (r, s) = (at(c), at(d));
                     let is_apart = pair.iter().all(|&node| node != c && node != d);
-                    let is_near = p.min(q).cmple(r.max(s)).all() && p.max(q).cmpge(r.min(s)).all();
-                    is_apart && is_near && segments_touch(p, q, r, s)
+                    is_apart && own.meets(Rect::around([r, s])) && segments_touch(p, q, r, s)
                 };
                 p != q && !lines.touches(p, q) && !found.iter().any(touches)
             })

@@ -97,7 +97,6 @@ fn auxin(
     let mut rng = seed.stream(Stage::AuxinSources);
     let grown = auxin::grow(spec, blade, start, &mut rng, observer)?;
     let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
-    Refining::begin(spec, observer, graph.len());
     // Not for particles, whose every tip is one of them.
     let (graph, nodes_after_step) = prune::pruned(spec, graph, grown.nodes_after_step);
     Ok(Raw {

@@ -15,6 +15,8 @@ use super::super::{Failure, leaf_args};
 pub(super) struct Job {
     pub(super) seed: u64,
     pub(super) spec: LeafSpec,
+    /// By how many percent its margin is perturbed; `None` where it is taken as it stands.
+    pub(super) varied: Option<f64>,
     /// Where it goes.
     pub(super) folder: PathBuf,
     /// The same, relative to the folder of the batch.
@@ -32,13 +34,13 @@ impl Job {
         root: Option<&PathBuf>,
         single: bool,
     ) -> Result<Self, Failure> {
-        let spec = leaf_args::resolve(document, seed)?;
+        let (spec, varied) = leaf_args::resolve_varied(document, seed)?;
         let root = root.cloned().unwrap_or_else(|| PathBuf::from(&spec.name));
         let subfolder = if single { String::new() } else { format!("{}_s{seed:04}", spec.name) };
         let folder = if single { root } else { root.join(&subfolder) };
         let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
         let output = spec.output.resolve().map_err(venation::error::Error::from)?;
-        Ok(Self { seed, spec, folder, subfolder, toml, output })
+        Ok(Self { seed, spec, varied, folder, subfolder, toml, output })
     }
 
     /// The files of this leaf, relative to its folder.

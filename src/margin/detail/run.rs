@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::super::{Landmark, LandmarkKind, Outline};
+use crate::geometry::measured::stretch;
 
 /// A piece of an outline that detail is set on.
 ///
@@ -42,14 +43,6 @@ impl Run {
         &self.points
     }
 
-    /// The stretch of the polyline that holds way `s`, and where in it.
-    fn stretch(&self, s: f64) -> (usize, f64) {
-        let last = self.ways.len() - 1;
-        let i = self.ways.partition_point(|&way| way <= s).clamp(1, last.max(1)) - 1;
-        let long = self.ways[(i + 1).min(last)] - self.ways[i];
-        (i, if long > 0.0 { ((s - self.ways[i]) / long).clamp(0.0, 1.0) } else { 0.0 })
-    }
-
     fn lerp(list: &[DVec2], (i, t): (usize, f64)) -> DVec2 {
         list[i].lerp(list[(i + 1).min(list.len() - 1)], t)
     }
@@ -57,7 +50,7 @@ impl Run {
     /// The point at way `s`; past the ends straight on.
     pub(super) fn at(&self, s: f64) -> DVec2 {
         let inside = s.clamp(0.0, self.length());
-        let p = Self::lerp(&self.points, self.stretch(inside));
+        let p = Self::lerp(&self.points, stretch(&self.ways, inside));
         if s == inside {
             return p;
         }
@@ -68,7 +61,7 @@ impl Run {
 
     /// The foot at way `s`.
     pub(super) fn foot(&self, s: f64) -> DVec2 {
-        Self::lerp(&self.feet, self.stretch(s.clamp(0.0, self.length())))
+        Self::lerp(&self.feet, stretch(&self.ways, s.clamp(0.0, self.length())))
     }
 
     /// The directions along the run and out of the blade at way `s`, of the chord over ±`reach`.

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::super::fit::{incisions, records};
 use super::super::{LandmarkKind, Outline};
+use crate::geometry::measured::stretch;
 use crate::geometry::polygon;
 
 /// The tip of a lobe or the valley between two.
@@ -96,10 +97,7 @@ impl Flank {
     }
 
     pub(super) fn at(&self, way: f64) -> DVec2 {
-        let last = self.ways.len() - 1;
-        let i = self.ways.partition_point(|&w| w <= way).clamp(1, last) - 1;
-        let long = self.ways[i + 1] - self.ways[i];
-        let t = if long > 0.0 { ((way - self.ways[i]) / long).clamp(0.0, 1.0) } else { 0.0 };
+        let (i, t) = stretch(&self.ways, way);
         self.points[i].lerp(self.points[i + 1], t)
     }
 

@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use super::flank::Flank;
 use super::{MorphPath, Way, bump};
+use crate::geometry::measured::stretch;
 use crate::geometry::{nurbs, polygon};
 use crate::margin::{MarginError, MarginSpec, entire};
 
@@ -19,7 +20,7 @@ pub struct MarginSide {
 
 impl MarginSide {
     /// A side from places with their measures, which rise.
-    pub(super) fn new(places: impl Iterator<Item = (f64, DVec2)>) -> Self {
+    fn new(places: impl Iterator<Item = (f64, DVec2)>) -> Self {
         let (measures, points) = places.unzip();
         Self { measures, points }
     }
@@ -34,21 +35,15 @@ impl MarginSide {
     /// The place with this measure.
     #[must_use]
     pub fn at(&self, measure: f64) -> DVec2 {
-        let i = self.piece(measure);
-        let (low, high) = (self.measures[i], self.measures[i + 1]);
-        let t = if high > low { ((measure - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+        let (i, t) = stretch(&self.measures, measure);
         self.points[i].lerp(self.points[i + 1], t)
     }
 
     /// The direction towards the apex there.
     #[must_use]
     pub fn ahead(&self, measure: f64) -> DVec2 {
-        let i = self.piece(measure);
+        let (i, _) = stretch(&self.measures, measure);
         (self.points[i + 1] - self.points[i]).normalize_or(DVec2::Y)
-    }
-
-    fn piece(&self, measure: f64) -> usize {
-        self.measures.partition_point(|&m| m <= measure).clamp(1, self.measures.len() - 1) - 1
     }
 
     /// The measure of the place nearest to `p`, and how far that is. One pass.
@@ -111,9 +106,8 @@ fn numbered(
         knots.push(flank.length());
         let count = (knots.len() - 1) as f64;
         let measure = |way: f64| {
-            let j = knots.partition_point(|&knot| knot <= way).clamp(1, knots.len() - 1) - 1;
-            let (low, high) = (knots[j], knots[j + 1]);
-            (j as f64 + ((way - low) / (high - low).max(1e-300)).clamp(0.0, 1.0)) / count
+            let (j, part) = stretch(&knots, way);
+            (j as f64 + part) / count
         };
         let hand = DVec2::new(if k == 1 { -length } else { length }, length);
         let places = flank.ways().iter().zip(flank.points());

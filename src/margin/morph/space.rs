@@ -91,9 +91,7 @@ impl Space {
         let landmarks = marks.into_iter().chain(others).collect();
         Outline { points: right, apex, cuts: Vec::new(), landmarks }.scaled(DVec2::splat(length))
     }
-}
 
-impl Space {
     /// A side between the margins as if it were the right one, from base to apex, with a measure that
     /// answers itself in all of them: marks at equal parts of 0 to 1, stations by the way between.
     pub(super) fn side(&self, left: bool, shares: &[f64], detail: f64) -> Vec<(f64, DVec2)> {

@@ -11,6 +11,7 @@ use glam::DVec2;
 use super::curve;
 use super::planter::{CLEARANCE, CLOSE, Planter};
 use super::{GuideSpec, PRIMARY};
+use crate::geometry::measured::stretch;
 use crate::seed::Rng;
 
 /// The angle at which a branch leaves the course of the vein that forks (degrees).
@@ -66,11 +67,8 @@ impl Fan {
     }
 
     fn place(&self, u: f64, t: f64) -> DVec2 {
-        let goal = u.clamp(0.0, 1.0) * self.width();
-        let next = self.seen.partition_point(|&seen| seen < goal).clamp(1, self.seen.len() - 1);
-        let (from, to) = (self.seen[next - 1], self.seen[next]);
-        let part = if to > from { (goal - from) / (to - from) } else { 0.0 };
-        self.base.lerp(self.arc[next - 1].lerp(self.arc[next], part), t)
+        let (i, part) = stretch(&self.seen, u * self.width());
+        self.base.lerp(self.arc[i].lerp(self.arc[i + 1], part), t)
     }
 }
 

@@ -6,6 +6,7 @@ use super::curve;
 use super::planter::{Planter, Vein};
 use super::primary::into_lobe;
 use super::{EXTERIOR, INTERSECONDARY, PRIMARY, SECONDARY, TERTIARY};
+use crate::geometry::point_grid::Nearest;
 use crate::parameter::parameters;
 use crate::veins::VeinError;
 use crate::veins::graph::{Rank, VeinKind};
@@ -124,8 +125,8 @@ fn midrib(planter: &mut Planter<'_>, line: &[DVec2]) -> Option<Vein> {
 
 /// Any other vein; round the margin where its line would cross that.
 fn branch(planter: &mut Planter<'_>, line: &[DVec2], rank: Rank) -> Option<Vein> {
-    let (node, far) = planter.nearest(line[0])?;
-    if far > LOST * planter.step {
+    let Nearest { id: node, distance2, .. } = planter.nearest(line[0])?;
+    if distance2.sqrt() > LOST * planter.step {
         return None;
     }
     let from = planter.graph.positions()[node as usize];

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::curve;
 use super::ground::Ground;
-use crate::geometry::point_grid::PointGrid;
+use crate::geometry::point_grid::{Nearest, PointGrid};
 use crate::geometry::polygon::segments_touch;
 use crate::veins::graph::{NodeId, Rank, VeinGraph, VeinKind};
 
@@ -163,10 +163,9 @@ impl<'a> Planter<'a> {
         free as f64 / (points.len() - 1).max(1) as f64
     }
 
-    /// The node nearest to `p`, and how far it is.
-    pub(super) fn nearest(&self, p: DVec2) -> Option<(NodeId, f64)> {
-        let nearest = self.near.nearest(p, DVec2::ONE, f64::INFINITY)?;
-        Some((nearest.id, nearest.distance2.sqrt()))
+    /// The node nearest to `p`.
+    pub(super) fn nearest(&self, p: DVec2) -> Option<Nearest> {
+        self.near.nearest(p, DVec2::ONE, f64::INFINITY)
     }
 
     /// Where a straight vein out of a node would meet another vein, within a distance; `None` where it
@@ -214,7 +213,7 @@ impl<'a> Planter<'a> {
             !own && segments_touch(a, b, c, d)
         });
         if joined && found.is_none() {
-            return self.near.nearest(b, DVec2::ONE, f64::INFINITY).map(|nearest| nearest.id);
+            return self.nearest(b).map(|nearest| nearest.id);
         }
         found.map(|(_, id)| id)
     }
@@ -223,9 +222,8 @@ impl<'a> Planter<'a> {
     /// has got free of the others for good.
     pub(super) fn lay_beside(&mut self, line: &[DVec2], rank: Rank, least: f64) -> Option<Vein> {
         let points = curve::resampled(line, self.step);
-        let near = |p: DVec2| self.near.nearest(p, DVec2::ONE, f64::INFINITY);
         let free = 1.6 * self.clearance;
-        let is_near = |&p: &DVec2| near(p).is_none_or(|n| n.distance2 <= free * free);
+        let is_near = |&p: &DVec2| self.nearest(p).is_none_or(|n| n.distance2 <= free * free);
         let lower = points.len() / 2;
         let first = points[..lower].iter().rposition(is_near).map_or(0, |last| last + 1);
         if first == lower {
@@ -233,7 +231,7 @@ impl<'a> Planter<'a> {
         }
         // Out of a node farther back, so that it leaves at a small angle.
         let back = points[first.saturating_sub(6)];
-        let from = near(back)?.id;
+        let from = self.nearest(back)?.id;
         let mut rest = vec![self.graph.positions()[from as usize]];
         rest.extend(&points[first..]);
         self.lay(from, &rest, rank, least)

@@ -37,15 +37,7 @@ struct Line {
 impl Line {
     fn new(ends: [NodeId; 2], net: &Net) -> Self {
         let [from, to] = ends.map(|node| net.place(node));
-        Self { ends, from, to, around: Rect { min: from.min(to), max: from.max(to) } }
-    }
-
-    /// Whether the boxes of two edges meet.
-    fn is_near(&self, other: Rect) -> bool {
-        (self.around.min.x <= other.max.x)
-            & (self.around.max.x >= other.min.x)
-            & (self.around.min.y <= other.max.y)
-            & (self.around.max.y >= other.min.y)
+        Self { ends, from, to, around: Rect::around([from, to]) }
     }
 
     /// Whether two edges touch, or come too close where they share a node.
@@ -95,7 +87,8 @@ impl Room {
         self.look_around(star, net);
         moved.iter().all(|&(ends, _)| {
             let line = Line::new(ends, net);
-            let is_hit = |other: &Line| other.is_near(line.around) && line.is_in_the_way(other);
+            let is_hit =
+                |other: &Line| other.around.meets(line.around) && line.is_in_the_way(other);
             let is_at_margin = is_near_margin && self.margin.touches(line.from, line.to);
             !(is_at_margin || self.found.iter().any(is_hit))
         })
@@ -109,7 +102,7 @@ impl Room {
         // None goes farther than a step in a sweep.
         edges.for_each_meeting(star.grown(*step), |edge| {
             let line = Line::new(net.edges[edge as usize], net);
-            if line.is_near(star) {
+            if line.around.meets(star) {
                 found.push(line);
             }
         });

@@ -19,13 +19,6 @@ pub(super) struct Pair {
     pub(super) ends: Option<[[f64; 2]; 2]>,
 }
 
-/// A pair of one parent.
-struct Match {
-    of: [Option<usize>; 2],
-    gap: [[f64; 2]; 2],
-    ends: Option<[[f64; 2]; 2]>,
-}
-
 /// All veins of both leaves, parents first. Those that leave answering veins on one side answer each other
 /// in order: as many as can, the nearest.
 pub(super) fn pairs(first: &[Laid], last: &[Laid], measures: [&[f64]; 2]) -> Vec<Pair> {
@@ -41,9 +34,7 @@ pub(super) fn pairs(first: &[Laid], last: &[Laid], measures: [&[f64]; 2]) -> Vec
         groups.dedup();
         for group in groups {
             let rows = families.each_ref().map(|f| f.get(&group).cloned().unwrap_or_default());
-            for Match { of, gap, ends } in matched(leaves, measures, [&rows[0], &rows[1]], group) {
-                pairs.push(Pair { of, parent: Some(next), gap, ends });
-            }
+            pairs.extend(matched(leaves, measures, [&rows[0], &rows[1]], group, next));
         }
         next += 1;
     }
@@ -78,13 +69,15 @@ fn share(leaf: &[Laid], i: usize) -> f64 {
 /// no vein is left alone that could have another.
 const APART: f64 = 0.9;
 
-/// Two rows put together, with the gaps in which lie those without counterpart.
+/// Two rows of veins that leave one pair put together, with the gaps in which lie those without
+/// counterpart.
 fn matched(
     leaves: [&[Laid]; 2],
     measures: [&[f64]; 2],
     rows: [&[usize]; 2],
     group: Group,
-) -> Vec<Match> {
+    parent: usize,
+) -> Vec<Pair> {
     let at = |k: usize, i: usize| share(leaves[k], rows[k][i]);
     let end = |k: usize, i: usize| measures[k][rows[k][i]];
     let gain = |i: usize, j: usize| {
@@ -105,7 +98,7 @@ fn matched(
             [0, 1].map(|k| [low.map_or(0.0, |i| at(k, i[k])), high.map_or(1.0, |i| at(k, i[k]))]);
         let ends =
             low.zip(high).map(|(low, high)| [0, 1].map(|k| [end(k, low[k]), end(k, high[k])]));
-        let mut add = |of| made.push(Match { of, gap, ends });
+        let mut add = |of| made.push(Pair { of, parent: Some(parent), gap, ends });
         rows[0][done[0]..anchor[0]].iter().for_each(|&v| add([Some(v), None]));
         rows[1][done[1]..anchor[1]].iter().for_each(|&v| add([None, Some(v)]));
         if high.is_some() {

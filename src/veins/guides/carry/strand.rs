@@ -53,7 +53,7 @@ fn quotient(a: DVec2, b: DVec2) -> DVec2 {
 }
 
 /// The place of the margin that a vein with this end is measured by.
-pub(super) fn landing(end: DVec2, sides: &Sides) -> (bool, f64) {
+fn landing(end: DVec2, sides: &Sides) -> (bool, f64) {
     let [right, left] = sides.each_ref().map(|side| side.nearest(end));
     if left.1 < right.1 { (true, left.0) } else { (false, right.0) }
 }

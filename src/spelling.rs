@@ -1,0 +1,18 @@
+//! What a misspelt word was to be.
+
+/// Keys and words less alike than this are no slip of the finger.
+pub(crate) const LIKE_A_KEY: f64 = 0.6;
+
+/// The candidate most like `word`, when one is more like it than `least` (0 nothing in common, 1 the
+/// same).
+pub(crate) fn nearest<'a>(
+    word: &str,
+    least: f64,
+    candidates: impl Iterator<Item = &'a str>,
+) -> Option<&'a str> {
+    candidates
+        .map(|candidate| (strsim::normalized_damerau_levenshtein(word, candidate), candidate))
+        .filter(|(likeness, _)| *likeness > least)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}

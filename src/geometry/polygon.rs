@@ -72,6 +72,10 @@ pub fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> DVec2 {
 /// Whether the segments a–b and c–d touch, ends included.
 #[must_use]
 pub fn segments_touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    // Pieces of one straight line lie by rounding on any side of each other, however far apart.
+    if a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any() {
+        return false;
+    }
     let (d1, d2) = (cross(a, b, c), cross(a, b, d));
     let (d3, d4) = (cross(c, d, a), cross(c, d, b));
     if d1 * d2 < 0.0 && d3 * d4 < 0.0 {
@@ -263,6 +267,21 @@ mod tests {
 
     fn square() -> Vec<DVec2> {
         [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(DVec2::from).to_vec()
+    }
+
+    #[test]
+    fn pieces_of_a_straight_line_touch_only_their_neighbours() {
+        // Off straight by rounding: each seems to lie across the other.
+        for turn in 0..200 {
+            let ahead = DVec2::from_angle(f64::from(turn) * 0.0317) * 0.26154;
+            let from = DVec2::new(4.360839171917715e-6, 8.902829793505502e-5);
+            let points: Vec<DVec2> = (0..40).map(|i| from + ahead * f64::from(i)).collect();
+            for (i, a) in points.windows(2).enumerate() {
+                for b in points[i + 1..].windows(2).skip(1) {
+                    assert!(!segments_touch(a[0], a[1], b[0], b[1]), "{a:?} {b:?}");
+                }
+            }
+        }
     }
 
     #[test]

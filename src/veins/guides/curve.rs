@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::geometry::polygon;
 use crate::seed::Rng;
 use crate::units::Angle;
 
@@ -47,6 +48,19 @@ pub(super) fn at(line: &[DVec2], share: f64) -> (DVec2, DVec2) {
         }
     }
     last
+}
+
+/// The share of a line at its point nearest to `p`.
+pub(super) fn share_at(line: &[DVec2], p: DVec2) -> f64 {
+    let (mut walked, mut best) = (0.0, (f64::INFINITY, 0.0));
+    for w in line.windows(2) {
+        let foot = polygon::nearest_on_segment(w[0], w[1], p);
+        if foot.distance_squared(p) < best.0 {
+            best = (foot.distance_squared(p), walked + foot.distance(w[0]));
+        }
+        walked += w[0].distance(w[1]);
+    }
+    if walked > 0.0 { best.1 / walked } else { 0.0 }
 }
 
 /// The first `share` of a line.

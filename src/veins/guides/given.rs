@@ -2,14 +2,15 @@
 
 use glam::DVec2;
 
+use super::aside::aside;
 use super::curve;
 use super::planter::{Planter, Vein};
 use super::primary::into_lobe;
 use super::{EXTERIOR, INTERSECONDARY, PRIMARY, SECONDARY, TERTIARY};
-use crate::geometry::point_grid::Nearest;
+use crate::geometry::{Rect, polygon};
 use crate::parameter::parameters;
 use crate::veins::VeinError;
-use crate::veins::graph::{Rank, VeinKind};
+use crate::veins::graph::{NodeId, Rank, VeinKind};
 
 parameters! {
     /// Guides as lines of points in lengths of the blade, from its base at (0, 0) to the apex at (0, 1). A
@@ -33,7 +34,7 @@ parameters! {
     }
 }
 
-/// A line that begins farther than this from every other (in steps) began on one that was not laid.
+/// A line that begins so much (in steps) beyond the end of what was laid of another began on nothing.
 const LOST: f64 = 6.0;
 
 /// The rest of a line that a vein in its way may cut off without being another end than was meant.
@@ -98,62 +99,66 @@ pub(super) fn check(given: &GivenSpec) -> Result<(), VeinError> {
 pub(super) fn lay(given: &GivenSpec, planter: &mut Planter<'_>) {
     planter.root(PRIMARY);
     let length = planter.ground.length();
+    let mut laid = LaidLines::default();
     for (rank, lines) in given.lists() {
         for line in lines {
             let line: Vec<DVec2> = line.iter().map(|p| DVec2::from(*p) * length).collect();
-            let first = planter.records.is_empty();
-            let laid = if first { midrib(planter, &line) } else { branch(planter, &line, rank) };
-            if let Some(vein) = laid {
+            let vein = if laid.is_empty() {
+                midrib(planter, &line)
+            } else {
+                laid.start(planter, line[0]).and_then(|start| branch(planter, &line, rank, &start))
+            };
+            if let Some((vein, course)) = vein {
                 join(planter, &vein, &line, rank);
+                laid.push(line, vein, course);
             }
         }
     }
 }
 
-/// The midrib, along its line or the way that the blade has for one.
-fn midrib(planter: &mut Planter<'_>, line: &[DVec2]) -> Option<Vein> {
+/// The midrib, along its line or the way that the blade has for one; what was laid and the whole of it.
+fn midrib(planter: &mut Planter<'_>, line: &[DVec2]) -> Option<(Vein, Vec<DVec2>)> {
     let axis = planter.ground.axis();
     // The base itself is on the margin; the root is inside.
-    let line = &begun_at(line, planter.ground.root())[..];
-    let line = if planter.way(line) < WHOLE && planter.way(line) < planter.way(&axis) {
-        &axis[..]
-    } else {
-        line
-    };
-    planter.lay(0, line, PRIMARY, 0.0)
+    let mut line = begun_at(line, planter.ground.root());
+    let way = planter.way(&line, PRIMARY);
+    if way < WHOLE && way < planter.way(&axis, PRIMARY) {
+        line = axis;
+    }
+    let vein = planter.lay(0, &line, PRIMARY, 0.0)?;
+    Some((vein, line))
 }
 
-/// Any other vein; round the margin where its line would cross that.
-fn branch(planter: &mut Planter<'_>, line: &[DVec2], rank: Rank) -> Option<Vein> {
-    let Nearest { id: node, distance2, .. } = planter.nearest(line[0])?;
-    if distance2.sqrt() > LOST * planter.step {
-        return None;
-    }
-    let from = planter.graph.positions()[node as usize];
-    let line = &begun_at(line, from)[..];
-    let end = line[line.len() - 1];
-    let is_main = matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary);
-    if is_main && planter.way(line) < WHOLE - REST {
-        let side = if end.x < from.x { -1.0 } else { 1.0 };
-        let round = into_lobe(planter, from, side, end);
-        if planter.way(&round) > planter.way(line) {
-            return planter.lay(node, &round, rank, 0.0);
+/// Any other vein. Where the margin is in its way it keeps inside that; where that is a long way, it goes
+/// round it.
+fn branch(
+    planter: &mut Planter<'_>,
+    line: &[DVec2],
+    rank: Rank,
+    start: &Start<'_>,
+) -> Option<(Vein, Vec<DVec2>)> {
+    let (node, from) = (start.node, planter.graph.positions()[start.node as usize]);
+    let mut course = begun_at(line, from);
+    if matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary) {
+        let left = start.is_left(&course);
+        if planter.way(&course, rank) < WHOLE {
+            let inside = planter.ground.inside(&curve::resampled(&course, planter.step));
+            if planter.way(&inside, rank) > planter.way(&course, rank) {
+                course = inside;
+            }
+        }
+        if planter.way(&course, rank) < WHOLE - REST {
+            let end = line[line.len() - 1];
+            let side = if end.x < from.x { -1.0 } else { 1.0 };
+            let round = into_lobe(planter, from, side, end);
+            let round = aside(round, start.parent, start.share, left, planter.ground.length());
+            if planter.way(&round, rank) > planter.way(&course, rank) {
+                course = round;
+            }
         }
     }
-    let laid = planter.lay(node, line, rank, 0.0);
-    if laid.is_some() || !is_main {
-        return laid;
-    }
-    // No room, or too near to the margin: nearer to the vein it leaves.
-    let ahead = planter.ahead(node);
-    TURNS.iter().find_map(|turn| {
-        let towards = |p: &DVec2| {
-            let off = *p - from;
-            from + (off.normalize_or_zero().lerp(ahead, *turn)).normalize_or_zero() * off.length()
-        };
-        let turned: Vec<DVec2> = line.iter().map(towards).collect();
-        planter.lay(node, &turned, rank, 0.0)
-    })
+    let vein = planter.lay(node, &course, rank, 0.0)?;
+    Some((vein, course))
 }
 
 /// The line moved so that it begins at `from`, less and less until its end stays: it keeps its direction.
@@ -165,14 +170,80 @@ fn begun_at(line: &[DVec2], from: DVec2) -> Vec<DVec2> {
     begun
 }
 
-/// How far a vein without room is turned towards the vein it leaves.
-const TURNS: [f64; 4] = [0.25, 0.5, 0.7, 0.85];
-
 /// A line that meets a vein at its end was to end there.
 fn join(planter: &mut Planter<'_>, vein: &Vein, line: &[DVec2], rank: Rank) {
     let reached = vein.length() / curve::length(line).max(1e-300);
     let fine = !matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary);
     if reached > 1.0 - REST || fine {
         planter.join_hit(vein);
+    }
+}
+
+/// Lines as they were given, and what was laid of them: a line begins on one that was given, wherever that
+/// had to be laid.
+#[derive(Debug, Default)]
+struct LaidLines {
+    lines: Vec<LaidLine>,
+}
+
+#[derive(Debug)]
+struct LaidLine {
+    given: Vec<DVec2>,
+    bounds: Rect,
+    vein: Vein,
+    /// All of the way of which the vein is the free part.
+    course: Vec<DVec2>,
+}
+
+/// Where a line leaves another.
+struct Start<'a> {
+    node: NodeId,
+    parent: &'a [DVec2],
+    share: f64,
+}
+
+impl Start<'_> {
+    /// Whether a line leaves on the left.
+    fn is_left(&self, line: &[DVec2]) -> bool {
+        let (at, ahead) = curve::at(self.parent, self.share);
+        ahead.perp_dot(curve::at(line, 0.25).0 - at) > 0.0
+    }
+}
+
+impl LaidLines {
+    fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    fn push(&mut self, given: Vec<DVec2>, vein: Vein, course: Vec<DVec2>) {
+        let bounds = Rect::around(given.iter().copied());
+        self.lines.push(LaidLine { given, bounds, vein, course });
+    }
+
+    /// Where a line leaves that begins at `p`; `None` where nothing was laid.
+    fn start(&self, planter: &Planter<'_>, p: DVec2) -> Option<Start<'_>> {
+        let mut best: Option<(f64, &LaidLine)> = None;
+        for line in &self.lines {
+            let most = best.map_or(f64::INFINITY, |(d2, _)| d2);
+            let outside = p.clamp(line.bounds.min, line.bounds.max).distance_squared(p);
+            if outside < most {
+                let feet = line.given.windows(2);
+                let feet = feet.map(|w| polygon::nearest_on_segment(w[0], w[1], p));
+                let d2 = feet.map(|foot| foot.distance_squared(p)).fold(f64::INFINITY, f64::min);
+                if d2 < most {
+                    best = Some((d2, line));
+                }
+            }
+        }
+        let (_, line) = best?;
+        let share = curve::share_at(&line.given, p);
+        // Nodes stand at equal steps.
+        let (whole, last) = (curve::length(&line.course), line.vein.nodes.len() - 1);
+        let at = share * whole * last as f64 / line.vein.length();
+        if at > last as f64 + LOST * planter.step * last as f64 / line.vein.length() {
+            return None;
+        }
+        let node = line.vein.nodes[(at.round() as usize).min(last)];
+        Some(Start { node, parent: &line.course, share })
     }
 }

@@ -75,6 +75,24 @@ impl<'a> Ground<'a> {
             && self.lines.nearest(b, inset).is_none_or(|(d2, _)| d2 >= inset * inset)
     }
 
+    /// The line with what lies outside, or too near to the margin, moved to where a guide may run.
+    pub(super) fn inside(&self, line: &[DVec2]) -> Vec<DVec2> {
+        let moved = |p: &DVec2| {
+            let inset = 1.05 * self.inset.min(AT_BASE * p.distance(self.root));
+            let out = !polygon::contains(self.margin.outline(), *p);
+            let reach = if out { f64::MAX.sqrt() } else { inset };
+            let Some((_, i)) = self.lines.nearest(*p, reach) else { return *p };
+            let (a, b) = self.segments[i];
+            let foot = polygon::nearest_on_segment(a, b, *p);
+            // Outlines run anticlockwise; a cut has blade on both sides.
+            let is_cut = i >= self.margin.outline().len();
+            let inwards = if is_cut { *p - foot } else { (b - a).perp() };
+            foot + inwards.normalize_or_zero() * inset
+        };
+        let (first, rest) = line.split_at(1);
+        first.iter().copied().chain(rest.iter().map(moved)).collect()
+    }
+
     /// How far the margin or a cut is from `p` in a direction.
     pub(super) fn cast(&self, p: DVec2, towards: DVec2) -> f64 {
         // By rounding a ray aimed at a vertex can slip between its two edges.

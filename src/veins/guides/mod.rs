@@ -16,6 +16,7 @@
 //! Guides never cross each other, the margin or a cut: a vein stops before it would touch anything, and
 //! one that would be left a stump is not laid.
 
+mod aside;
 pub mod carry;
 mod course;
 mod curve;

@@ -112,11 +112,7 @@ impl<'a> Planter<'a> {
         let mut free = 1;
         while free < points.len() {
             let (a, b) = (points[free - 1], points[free]);
-            let is_free = match rank.kind {
-                VeinKind::Primary => self.ground.is_free_at_base(a, b),
-                _ => self.ground.is_free(a, b),
-            };
-            if !b.is_finite() || !is_free {
+            if !b.is_finite() || !self.is_free(a, b, rank) {
                 break;
             }
             // A curve that is drawn tight can cross itself.
@@ -148,17 +144,18 @@ impl<'a> Planter<'a> {
         Some(Vein { nodes, line: points[..free].to_vec(), hit })
     }
 
-    /// Where the vein of a node runs to.
-    pub(super) fn ahead(&self, node: NodeId) -> DVec2 {
-        let positions = self.graph.positions();
-        let back = self.graph.parent(node).map(|parent| positions[parent as usize]);
-        back.map_or(DVec2::Y, |back| (positions[node as usize] - back).normalize_or(DVec2::Y))
+    /// Whether margin and cuts let a vein of this rank go from a to b.
+    fn is_free(&self, a: DVec2, b: DVec2, rank: Rank) -> bool {
+        match rank.kind {
+            VeinKind::Primary => self.ground.is_free_at_base(a, b),
+            _ => self.ground.is_free(a, b),
+        }
     }
 
-    /// The share of a line that the margin and cuts leave free.
-    pub(super) fn way(&self, line: &[DVec2]) -> f64 {
+    /// The share of a line that margin and cuts leave free for a vein of this rank.
+    pub(super) fn way(&self, line: &[DVec2], rank: Rank) -> f64 {
         let points = curve::resampled(line, self.step);
-        let is_free = |w: &&[DVec2]| self.ground.is_free_at_base(w[0], w[1]);
+        let is_free = |w: &&[DVec2]| self.is_free(w[0], w[1], rank);
         let free = points.windows(2).take_while(is_free).count();
         free as f64 / (points.len() - 1).max(1) as f64
     }

@@ -49,7 +49,11 @@ pub(super) fn lay(spec: &GuideSpec, planter: &mut Planter<'_>, rng: &mut Rng) ->
     let amplitude = spec.irregularity * WANDER * planter.ground.length();
     let wavering = curve::wavering(&straight, amplitude, rng);
     // Where a narrow base leaves no room to stray, it does not.
-    let axis = if planter.way(&wavering) < planter.way(&straight) { straight } else { wavering };
+    let axis = if planter.way(&wavering, PRIMARY) < planter.way(&straight, PRIMARY) {
+        straight
+    } else {
+        wavering
+    };
     primaries.midrib = planter.lay(root, &axis, PRIMARY, 0.0);
     let Some(midrib) = primaries.midrib.clone() else { return primaries };
     match spec.primary {

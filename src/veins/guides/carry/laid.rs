@@ -27,6 +27,11 @@ pub(super) struct Group {
 }
 
 impl Group {
+    /// On which side of its parent a vein leaves it.
+    pub(super) fn is_left(self) -> bool {
+        self.left
+    }
+
     /// Primaries beside the midrib and secondaries are one: in one leaf a lobe has one, in another the other.
     pub(super) fn is_main(self) -> bool {
         self.kind == 0

@@ -13,6 +13,7 @@ mod strand;
 
 use glam::DVec2;
 
+use super::aside::aside;
 use super::curve;
 use super::given::GivenSpec;
 use super::{GuideSpec, PrimaryType, planted};
@@ -22,7 +23,7 @@ use crate::margin::morph::{MarginSide, MorphPath};
 use crate::seed::{Seed, Stage};
 use crate::veins::VeinSpec;
 use crate::veins::graph::VeinKind;
-use laid::Laid;
+use laid::{Group, Laid};
 use pairs::Pair;
 use strand::{Between, Sides, Strand};
 
@@ -44,6 +45,7 @@ struct Vein {
     of: [Strand; 2],
     lives: Lives,
     is_main: bool,
+    is_left: bool,
 }
 
 /// Which ends have a vein.
@@ -175,7 +177,9 @@ fn veins(laid: [&[Laid]; 2], sides: [&Sides; 2]) -> Vec<Vein> {
             let ranks = [0, 1].map(|k| pair.of[k].map(|i| laid[k][i].rank));
             // Between a primary and a secondary it is a secondary.
             let rank = ranks.into_iter().flatten().max_by_key(|rank| rank.order);
-            let is_main = (0..2).any(|k| pair.of[k].is_some_and(|i| laid[k][i].group.is_main()));
+            let any = |is: fn(Group) -> bool| {
+                (0..2).any(|k| pair.of[k].is_some_and(|i| is(laid[k][i].group)))
+            };
             Vein {
                 kind: rank.map_or(VeinKind::Minor, |rank| rank.kind),
                 parent: pair.parent,
@@ -185,7 +189,8 @@ fn veins(laid: [&[Laid]; 2], sides: [&Sides; 2]) -> Vec<Vein> {
                     [Some(_), None] => Lives::First,
                     _ => Lives::Last,
                 },
-                is_main,
+                is_main: any(Group::is_main),
+                is_left: any(Group::is_left),
             }
         })
         .collect()
@@ -249,7 +254,10 @@ impl Lines<'_> {
             let line = self.line(to);
             (line.len() > 1).then(|| curve::at(&line, share).0)
         });
-        let line = between.line(from, met);
+        let mut line = between.line(from, met);
+        if let Some(parent) = vein.parent.filter(|_| vein.is_main) {
+            line = aside(line, &self.line(parent), between.from(), vein.is_left, 1.0);
+        }
         let grown = match vein.lives {
             Lives::Always => return self.finish(i, line),
             Lives::First => 1.0 - self.share,

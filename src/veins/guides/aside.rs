@@ -1,0 +1,77 @@
+//! A vein keeps to its side of the one it leaves.
+
+use glam::DVec2;
+
+use crate::geometry::polygon;
+
+/// A vein gets away from its parent at no smaller angle than this (its sine: 20°),
+const RISE: f64 = 0.34;
+
+/// until it is so far off (lengths of the blade).
+const OFF: f64 = 0.03;
+
+/// A vein that leaves past this share of its parent goes on beyond its end, where there are no sides.
+const TIP: f64 = 0.97;
+
+/// The line moved off the parent it leaves at share `from`, where it would run along that or cross it: as
+/// the parent bends on the way from leaf to leaf, what was seen from the line's own ends can lie across it.
+/// `length` is that of the blade.
+pub(super) fn aside(
+    mut line: Vec<DVec2>,
+    parent: &[DVec2],
+    from: f64,
+    left: bool,
+    length: f64,
+) -> Vec<DVec2> {
+    if from > TIP || parent.len() < 2 {
+        return line;
+    }
+    let hand = if left { 1.0 } else { -1.0 };
+    let (mut way, mut last) = (0.0, line[0]);
+    for p in line.iter_mut().skip(1) {
+        way += p.distance(last);
+        last = *p;
+        let (foot, ahead) = nearest(parent, *p);
+        let out = ahead.perp() * hand;
+        let side = if out.dot(*p - foot) < 0.0 { -1.0 } else { 1.0 };
+        let off = side * p.distance(foot);
+        let least = (RISE * way).min(OFF * length);
+        if off < least {
+            *p += out * (least - off);
+        }
+    }
+    line
+}
+
+/// The foot of a point on a line, and the direction of the line there.
+fn nearest(line: &[DVec2], p: DVec2) -> (DVec2, DVec2) {
+    let feet = line.windows(2).map(|w| (polygon::nearest_on_segment(w[0], w[1], p), w[1] - w[0]));
+    let nearest = feet.min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)));
+    nearest.map_or((p, DVec2::Y), |(foot, ahead)| (foot, ahead.normalize_or(DVec2::Y)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_across_its_parent_is_moved_to_its_side() {
+        let parent: Vec<DVec2> = (0..=20).map(|i| DVec2::new(0.0, f64::from(i) / 20.0)).collect();
+        let line: Vec<DVec2> = (0..=20)
+            .map(|i| f64::from(i) / 20.0)
+            .map(|t| DVec2::new(0.3 * t * (t - 0.3), 0.5 + 0.3 * t))
+            .collect();
+        assert!(line.iter().any(|p| p.x < -0.005));
+        let moved = aside(line.clone(), &parent, 0.5, false, 1.0);
+        assert!(moved[1..].iter().all(|p| p.x > 0.0), "{moved:?}");
+        assert_eq!(moved[20], line[20]);
+        // What is on its side already stays.
+        let far: Vec<DVec2> = line.iter().map(|p| DVec2::new(p.y - 0.5, p.y)).collect();
+        assert_eq!(aside(far.clone(), &parent, 0.5, false, 1.0), far);
+        let mirrored =
+            aside(line.iter().map(|p| DVec2::new(-p.x, p.y)).collect(), &parent, 0.5, true, 1.0);
+        for (a, b) in moved.iter().zip(&mirrored) {
+            assert!((a.x + b.x).abs() < 1e-12 && a.y == b.y);
+        }
+    }
+}

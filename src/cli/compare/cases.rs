@@ -77,7 +77,9 @@ impl Emergence {
     fn apply(self, spec: &mut LeafSpec) -> Result<(), Error> {
         // Of its width alone: whatever the teeth are.
         let width = margin::build(&spec.margin, Seed(0))?.bounds().size().x;
-        let young = spec.growth.start_step as f64 / spec.growth.total_steps as f64;
+        // The share of its size at which the last convergence points appear.
+        let (start, total) = (spec.growth.start_step as f64, spec.growth.total_steps as f64);
+        let young = (start + spec.veins.convergence.until * (total - start).max(0.0)) / total;
         let has = |more: Self| self as u8 >= more as u8;
         if has(Self::Basipetal) {
             spec.growth.r#type = GrowthType::NonUniform;
@@ -123,7 +125,7 @@ const STRAIGHTNESS: f64 = 0.7;
 const SYMMETRY: f64 = 0.8;
 const COARSENESS: f64 = 8.0;
 
-/// Between convergence points, in widths of the blade when veins begin.
+/// Between convergence points, in widths of the blade when the last of them appear.
 const SPACING: f64 = 0.3;
 
 /// The paper's spacings (pixels) and how many particles they gave, the number of the random pattern.

@@ -88,6 +88,22 @@ pub fn segments_touch(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
         || (d4 == 0.0 && within(c, d, b))
 }
 
+/// Whether the segments a–b and c–d touch or come as near as `gap`; some count that stay up to √2 times as far
+/// apart.
+#[must_use]
+pub fn segments_near(a: DVec2, b: DVec2, c: DVec2, d: DVec2, gap: f64) -> bool {
+    let boxes_part =
+        (a.min(b) - gap).cmpgt(c.max(d)).any() || (c.min(d) - gap).cmpgt(a.max(b)).any();
+    // Whether c–d lies on one side of the line through a and b, farther from it than the gap.
+    let parts = |a: DVec2, b: DVec2, c: DVec2, d: DVec2| {
+        // No shorter than the segment, and quicker than its length.
+        let along = (b - a).abs().element_sum();
+        let (e, f) = (cross(a, b, c), cross(a, b, d));
+        e.min(f) > gap * along || e.max(f) < -gap * along
+    };
+    !(boxes_part || parts(a, b, c, d) || parts(c, d, a, b))
+}
+
 /// Whether a polygon never turns clockwise. Straight stretches of a sampled curve turn by rounding,
 /// which is far below the tolerance.
 #[must_use]
@@ -291,6 +307,26 @@ mod tests {
         assert_eq!(perimeter(&square()), 8.0);
         let clockwise: Vec<_> = square().into_iter().rev().collect();
         assert_eq!(signed_area(&clockwise), -4.0);
+    }
+
+    #[test]
+    fn segments_are_near_when_their_distance_says_so() {
+        let mut rng = crate::seed::Seed(3).stream(crate::seed::Stage::Guides);
+        let (mut near, mut far) = (0, 0);
+        for _ in 0..20_000 {
+            let [a, b, c, d] = [(); 4].map(|()| DVec2::new(rng.unit(), rng.unit()));
+            let ends = [(a, b, c), (a, b, d), (c, d, a), (c, d, b)];
+            let apart = ends.map(|(a, b, p)| nearest_on_segment(a, b, p).distance(p));
+            let apart = apart.into_iter().fold(f64::INFINITY, f64::min);
+            if segments_touch(a, b, c, d) || apart <= 0.05 {
+                near += 1;
+                assert!(segments_near(a, b, c, d, 0.05), "{a} {b} {c} {d}");
+            } else if apart > 0.05 * 1.42 {
+                far += 1;
+                assert!(!segments_near(a, b, c, d, 0.05), "{a} {b} {c} {d}");
+            }
+        }
+        assert!(near > 5000 && far > 5000, "{near} {far}");
     }
 
     #[test]

@@ -11,9 +11,9 @@ use glam::DVec2;
 use super::VeinSpec;
 use super::chains::Chains;
 use super::graph::{NodeId, VeinGraph};
+use super::planar::{CLEARANCE_MM, Line};
 use crate::geometry::Rect;
 use crate::geometry::box_cells::BoxCells;
-use crate::geometry::polygon::segments_touch;
 use crate::geometry::segment_grid::SegmentGrid;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -98,7 +98,7 @@ struct Surroundings {
     bowed: Vec<[NodeId; 2]>,
     there: SegmentGrid,
     lines: SegmentIndex,
-    found: Vec<[NodeId; 2]>,
+    found: Vec<Line>,
 }
 
 impl Surroundings {
@@ -126,26 +126,26 @@ impl Surroundings {
         }
     }
 
-    /// Whether a vein touches no other, nor itself or the margin, where its nodes are now.
+    /// Whether nothing is in the way of a vein, itself and the margin included, where its nodes are now.
     fn are_clear(&mut self, nodes: &[NodeId], positions: &[DVec2]) -> bool {
         let at = |node: NodeId| positions[node as usize];
+        let line = |ends: [NodeId; 2]| Line::new(ends, positions);
         let Self { edges, home, bowed, there, lines, found } = self;
         (0..nodes.len() - 1).step_by(AT_ONCE).all(|first| {
             let part = &nodes[first..nodes.len().min(first + AT_ONCE + 1)];
-            let around = Rect::around(part.iter().map(|&node| at(node)));
+            let around = Rect::around(part.iter().map(|&node| at(node))).grown(CLEARANCE_MM);
             found.clear();
-            home.for_each_meeting(around, |edge| found.push(edges[edge as usize]));
-            there.for_each_near(around.min, around.max, |edge| found.push(bowed[edge as usize]));
-            found.extend(nodes.windows(2).map(|pair| [pair[0], pair[1]]));
+            home.for_each_meeting(around, |edge| found.push(line(edges[edge as usize])));
+            there.for_each_near(around.min, around.max, |edge| {
+                found.push(line(bowed[edge as usize]));
+            });
+            found.extend(nodes.windows(2).map(|pair| line([pair[0], pair[1]])));
             part.windows(2).all(|pair| {
                 let (p, q) = (at(pair[0]), at(pair[1]));
-                let own = Rect::around([p, q]);
-                let touches = |&[c, d]: &[NodeId; 2]| {
-                    let (r, s) = (at(c), at(d));
-                    let is_apart = pair.iter().all(|&node| node != c && node != d);
-                    is_apart && own.meets(Rect::around([r, s])) && segments_touch(p, q, r, s)
-                };
-                p != q && !lines.touches(p, q) && !found.iter().any(touches)
+                let own = line([pair[0], pair[1]]);
+                p != q
+                    && !lines.touches(p, q)
+                    && !found.iter().any(|other| own.is_in_the_way(other))
             })
         })
     }

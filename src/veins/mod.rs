@@ -192,4 +192,6 @@ fn finished(
 }
 
 #[cfg(test)]
+mod properties;
+#[cfg(test)]
 mod tests;

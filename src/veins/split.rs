@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::graph::{NodeId, Rank, VeinGraph};
 use super::{VeinSpec, planar, widths};
-use crate::geometry::polygon::segments_touch;
+use crate::geometry::polygon::segments_near;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
 
@@ -38,19 +38,15 @@ pub fn split(
         return (graph, nodes_after_step);
     }
     let radii = widths::murray(&graph, spec.tip_radius_mm, spec.murray_exponent);
-    let (made, numbers) = taken_apart(&graph, &radii, &margin.lines());
-    let count = |old: &u32| old.checked_sub(1).map_or(0, |last| numbers[last as usize] + 1);
+    let (made, counts) = taken_apart(&graph, &radii, &margin.lines());
+    let count = |old: &u32| old.checked_sub(1).map_or(0, |last| counts[last as usize]);
     let nodes_after_step = nodes_after_step.iter().map(count).collect();
     (made, nodes_after_step)
 }
 
-/// The graph taken apart, with the new number of each node. `radii` are those of the nodes; `margin`
-/// are the lines that no vein crosses.
-fn taken_apart(
-    graph: &VeinGraph,
-    radii: &[f64],
-    margin: &SegmentIndex,
-) -> (VeinGraph, Vec<NodeId>) {
+/// The graph taken apart, and how many nodes it has up to what was each node. `radii` are those of the
+/// nodes; `margin` are the lines that no vein crosses.
+fn taken_apart(graph: &VeinGraph, radii: &[f64], margin: &SegmentIndex) -> (VeinGraph, Vec<u32>) {
     let mut kept = vec![false; graph.len()];
     loop {
         let mut stars = Stars::of(graph, radii);
@@ -68,7 +64,7 @@ fn taken_apart(
             any |= !std::mem::replace(&mut kept[host as usize], true);
         }
         if !any {
-            return (made, numbers.new);
+            return (made, numbers.counts);
         }
     }
 }
@@ -113,6 +109,8 @@ struct Stars {
 struct Numbers {
     new: Vec<NodeId>,
     old: Vec<NodeId>,
+    /// How many there are after each node and what was taken from its star.
+    counts: Vec<u32>,
 }
 
 impl Stars {
@@ -224,9 +222,11 @@ impl Stars {
             if own.contains(&c) || own.contains(&d) {
                 return false;
             }
-            segments_touch(place, end, self.positions[c as usize], self.positions[d as usize])
+            let [c, d] = [c, d].map(|node| self.positions[node as usize]);
+            segments_near(place, end, c, d, planar::CLEARANCE_MM)
         };
-        !self.edges.any_near(place.min(end), place.max(end), touches)
+        let gap = planar::CLEARANCE_MM;
+        !self.edges.any_near(place.min(end) - gap, place.max(end) + gap, touches)
     }
 
     fn hang(&mut self, node: NodeId, place: DVec2, a: Spoke, b: Spoke) {
@@ -286,7 +286,11 @@ impl Stars {
             beside[self.hosts[added] as usize].push(added as NodeId);
         }
         let mut made = VeinGraph::new();
-        let mut numbers = Numbers { new: vec![NodeId::MAX; self.positions.len()], old: Vec::new() };
+        let mut numbers = Numbers {
+            new: vec![NodeId::MAX; self.positions.len()],
+            old: Vec::new(),
+            counts: Vec::with_capacity(n),
+        };
         let mut emit = |node: NodeId, numbers: &mut Numbers| {
             let place = self.positions[node as usize];
             let id = match self.parents[node as usize] {
@@ -313,11 +317,11 @@ impl Stars {
                     !ready
                 });
             }
+            numbers.counts.push(numbers.old.len() as u32);
         }
         for &(a, b) in &self.joins {
             made.join(numbers.new[a as usize], numbers.new[b as usize]);
         }
-        numbers.new.truncate(n);
         (made, numbers)
     }
 }

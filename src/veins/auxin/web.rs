@@ -5,9 +5,10 @@ use glam::DVec2;
 
 use super::NONE;
 use crate::geometry::Rect;
-use crate::geometry::polygon::{cross, segments_touch};
+use crate::geometry::polygon::{cross, segments_near};
 use crate::geometry::segment_grid::SegmentGrid;
 use crate::veins::graph::NodeId;
+use crate::veins::planar::CLEARANCE_MM;
 
 /// An edge, the nodes at its ends in the order in which it was made.
 pub(super) type Edge = (NodeId, NodeId);
@@ -49,8 +50,8 @@ impl Web {
         });
     }
 
-    /// The edge that a line first crosses or touches on its way from `p` to `q`, those at the nodes
-    /// `apart` excepted.
+    /// The edge that a line first crosses, touches or all but touches on its way from `p` to `q`, those at
+    /// the nodes `apart` excepted.
     pub(super) fn crossed(
         &self,
         p: DVec2,
@@ -65,7 +66,7 @@ impl Web {
                 return;
             }
             let (a, b) = (positions[a as usize], positions[b as usize]);
-            if segments_touch(p, q, a, b) {
+            if segments_near(p, q, a, b, CLEARANCE_MM) {
                 let way = way_to(p, q, a, b);
                 if way < first.0 || (way == first.0 && id < first.1) {
                     first = (way, id);

@@ -39,9 +39,6 @@ const LEAST_EDGE: f64 = 0.2;
 /// shrink on and on, and small areoles with it.
 const LEAST_CHAIN: f64 = 0.35;
 
-/// Edges that share a node stay apart by this share of the shorter one.
-const LEAST_GAP: f64 = 0.02;
-
 /// A graph in `margin` relaxed as `veins.relaxation` says; as it is at 0. Veins pull with their widths
 /// after the settings, those of a tree where widths come from the flow. `swept` is called after every
 /// sweep.

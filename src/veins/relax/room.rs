@@ -1,14 +1,12 @@
 //! Whether there is room for veins where a junction has moved to.
 
-use glam::DVec2;
-
 use super::net::Net;
-use super::{LEAST_EDGE, LEAST_GAP, LEAST_SHRINK};
+use super::{LEAST_EDGE, LEAST_SHRINK};
 use crate::geometry::Rect;
 use crate::geometry::box_cells::BoxCells;
-use crate::geometry::polygon::{nearest_on_segment, segments_touch};
 use crate::geometry::segments::SegmentIndex;
 use crate::veins::graph::NodeId;
+use crate::veins::planar::Line;
 
 /// An edge of which both ends may have moved, and how long it was before.
 pub(super) type Moved = ([NodeId; 2], f64);
@@ -23,41 +21,6 @@ pub(super) struct Room {
     step: f64,
     edges: Option<BoxCells>,
     found: Vec<Line>,
-}
-
-/// An edge and the box around it.
-#[derive(Debug, Clone, Copy)]
-struct Line {
-    ends: [NodeId; 2],
-    from: DVec2,
-    to: DVec2,
-    around: Rect,
-}
-
-impl Line {
-    fn new(ends: [NodeId; 2], net: &Net) -> Self {
-        let [from, to] = ends.map(|node| net.place(node));
-        Self { ends, from, to, around: Rect::around([from, to]) }
-    }
-
-    /// Whether two edges touch, or come too close where they share a node.
-    fn is_in_the_way(&self, other: &Self) -> bool {
-        let [a, b] = self.ends;
-        let [c, d] = other.ends;
-        let (hub, mine, theirs) = if a == c {
-            (self.from, (b, self.to), (d, other.to))
-        } else if a == d {
-            (self.from, (b, self.to), (c, other.from))
-        } else if b == c {
-            (self.to, (a, self.from), (d, other.to))
-        } else if b == d {
-            (self.to, (a, self.from), (c, other.from))
-        } else {
-            return segments_touch(self.from, self.to, other.from, other.to);
-        };
-        // The edge itself, or a second one between the same nodes.
-        mine.0 != theirs.0 && is_gap_below(hub, mine.1, theirs.1, LEAST_GAP)
-    }
 }
 
 impl Room {
@@ -86,11 +49,10 @@ impl Room {
         let is_near_margin = self.margin.any_near(star.min, star.max, |_| true);
         self.look_around(star, net);
         moved.iter().all(|&(ends, _)| {
-            let line = Line::new(ends, net);
-            let is_hit =
-                |other: &Line| other.around.meets(line.around) && line.is_in_the_way(other);
-            let is_at_margin = is_near_margin && self.margin.touches(line.from, line.to);
-            !(is_at_margin || self.found.iter().any(is_hit))
+            let line = Line::new(ends, &net.positions);
+            let [from, to] = ends.map(|node| net.place(node));
+            let is_at_margin = is_near_margin && self.margin.touches(from, to);
+            !(is_at_margin || self.found.iter().any(|other| line.is_in_the_way(other)))
         })
     }
 
@@ -101,25 +63,10 @@ impl Room {
         let Some(edges) = edges else { return };
         // None goes farther than a step in a sweep.
         edges.for_each_meeting(star.grown(*step), |edge| {
-            let line = Line::new(net.edges[edge as usize], net);
-            if line.around.meets(star) {
+            let line = Line::new(net.edges[edge as usize], &net.positions);
+            if line.around().meets(star) {
                 found.push(line);
             }
         });
     }
-}
-
-/// Whether two edges from `hub` keep apart by less than a share of the shorter one.
-fn is_gap_below(hub: DVec2, a: DVec2, b: DVec2, share: f64) -> bool {
-    let (to_a, to_b) = (a - hub, b - hub);
-    let (along, across) = (to_a.dot(to_b), to_a.perp_dot(to_b));
-    // The share is at least the sine of the angle between them, and 1 from a right angle on: only two that
-    // lie nearly on each other are measured. A hundredth more, for rounding.
-    let sine2 = 1.02 * share * share;
-    if along <= 0.0 || across * across > sine2 * to_a.length_squared() * to_b.length_squared() {
-        return false;
-    }
-    let apart =
-        a.distance(nearest_on_segment(hub, b, a)).min(b.distance(nearest_on_segment(hub, a, b)));
-    apart / hub.distance(a).min(hub.distance(b)) < share
 }

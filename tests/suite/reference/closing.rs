@@ -1,6 +1,8 @@
 //! Relative neighbours, tags and meetings of closed venation, and veins in each other's way.
 
 use glam::DVec2;
+use venation::geometry::polygon::nearest_on_segment;
+use venation::veins::planar::CLEARANCE_MM;
 
 use super::{Source, World};
 
@@ -162,12 +164,11 @@ impl World<'_> {
             }
             let (a, b) = (self.positions[u], self.positions[v]);
             let (before, after) = (side(a, b, p), side(a, b, q));
-            // To touch is to be in the way. On one line, where the boxes tell.
-            let meet = before * after <= 0.0
-                && side(p, q, a) * side(p, q, b) <= 0.0
-                && p.min(q).cmple(a.max(b)).all()
-                && a.min(b).cmple(p.max(q)).all();
-            if meet {
+            // All but to touch is to be in the way.
+            let crosses = before * after < 0.0 && side(p, q, a) * side(p, q, b) < 0.0;
+            let apart = [(a, b, p), (a, b, q), (p, q, a), (p, q, b)]
+                .map(|(a, b, p)| nearest_on_segment(a, b, p).distance(p));
+            if crosses || apart.iter().any(|&gap| gap <= CLEARANCE_MM) {
                 let way = if before == after { 0.0 } else { before / (before - after) };
                 if first.is_none_or(|(least, _)| way < least) {
                     first = Some((way, (u, v)));

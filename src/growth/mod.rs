@@ -15,80 +15,22 @@ mod metric;
 mod overlap;
 mod rates;
 mod scales;
+mod sight;
+mod spec;
 mod warp;
 
 use glam::DVec2;
 
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
-use crate::margin::{Margin, MarginError};
-use crate::parameter::{parameters, words};
+use crate::margin::Margin;
 use marginal::Sweep;
 pub use metric::{Frame, Metric};
 use rates::Rates;
 pub use rates::{EvenGrowth, RateAxes, RatePattern, RateSpec};
 use scales::Schedule;
+pub use spec::{GrowthError, GrowthSpec, GrowthType};
 use warp::Warp;
-
-words! {
-    /// How the blade grows (Foster, appendix B.2).
-    pub enum GrowthType {
-        /// Full size from the first step on.
-        None = "none",
-        /// New tissue at the margin only; what is inside does not move.
-        Marginal = "marginal",
-        /// The same rate in both directions; what is inside is carried along.
-        Isotropic = "isotropic",
-        /// Different rates across and along; what is inside is carried along.
-        Anisotropic = "anisotropic",
-        /// At rates that differ with place and age (`growth.rates`); what is inside is carried along.
-        NonUniform = "non-uniform",
-    }
-}
-
-parameters! {
-    /// Growth of the blade, in steps (Foster, appendix B.2).
-    pub struct GrowthSpec {
-        /// How the blade grows: `none`, `marginal`, `isotropic`, `anisotropic` or `non-uniform`.
-        r#type: choice(GrowthType, GrowthType::Isotropic),
-        /// Steps from the first margin to the mature one (not for anisotropic growth).
-        total_steps: count(400, 1..=100_000, "steps"),
-        /// Steps of growth across the blade, for anisotropic growth.
-        horizontal_steps: count(300, 1..=100_000, "steps"),
-        /// Steps of growth along the blade, for anisotropic growth.
-        vertical_steps: count(400, 1..=100_000, "steps"),
-        /// The step at which veins begin; near the total they come out straight.
-        start_step: count(100, 0..=100_000, "steps"),
-        /// Share of the steps that are made: below 1 the leaf stays a bud of that age.
-        scale: number(1.0, 0.01..=1.0, ""),
-        /// Rates by place and age, for `type = "non-uniform"`.
-        rates: group(RateSpec, RateSpec::default()),
-    }
-}
-
-/// Why a blade cannot grow.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GrowthError {
-    /// A setting is out of its limits, or contradicts another.
-    #[error("{key} = {value} {problem}")]
-    Setting {
-        /// The key.
-        key: &'static str,
-        /// Its value.
-        value: f64,
-        /// The limit and what to change.
-        problem: String,
-    },
-    /// The blade is not a proper margin at some age, mostly because it is too small.
-    #[error("the blade at step {step} is no margin: {source}; raise growth.scale")]
-    Margin {
-        /// The step.
-        step: u64,
-        /// What is wrong with it.
-        source: MarginError,
-    },
-}
 
 /// A blade at every age. Points are in the frame of the mature leaf.
 ///
@@ -287,61 +229,6 @@ impl GrowingBlade {
     #[must_use]
     pub fn is_warped(&self) -> bool {
         self.rates.as_ref().is_some_and(Rates::is_field)
-    }
-
-    /// Whether `p` lies inside the blade at a step.
-    #[must_use]
-    pub fn is_inside(&self, p: DVec2, step: u64) -> bool {
-        self.edges.contains(p) && self.birth_step(p).is_some_and(|birth| birth <= step)
-    }
-
-    /// The first step at which the margin has passed the place `p` of the mature blade; `None` when
-    /// that is after the last step.
-    #[must_use]
-    pub fn birth_step(&self, p: DVec2) -> Option<u64> {
-        let Some(sweep) = &self.sweep else { return Some(self.schedule.first) };
-        let scale = sweep.scale_reaching(p);
-        if self.rates.is_none() {
-            return self.schedule.first_at_least(scale);
-        }
-        let (mut low, mut high) = (self.schedule.first, self.schedule.last + 1);
-        while low < high {
-            let middle = low.midpoint(high);
-            if self.passed(middle) >= scale { high = middle } else { low = middle + 1 }
-        }
-        (low <= self.schedule.last).then_some(low)
-    }
-
-    /// Whether `p` lies inside the mature blade.
-    #[must_use]
-    pub fn covers(&self, p: DVec2) -> bool {
-        self.edges.contains(p)
-    }
-
-    /// Whether the margin or a cut stands between two points inside the blade.
-    #[must_use]
-    pub fn blocks_sight(&self, a: DVec2, b: DVec2, step: u64) -> bool {
-        !self.convex && (self.blocks_sight_for_ever(a, b) || self.blocks_sight_yet(a, b, step))
-    }
-
-    /// Whether the mature margin or a cut stands between two points, so that they will never see
-    /// each other.
-    #[must_use]
-    pub fn blocks_sight_for_ever(&self, a: DVec2, b: DVec2) -> bool {
-        !self.convex && (self.edges.touches(a, b) || self.cuts.touches(a, b))
-    }
-
-    /// Whether tissue that is still to come lies between two points.
-    #[must_use]
-    pub fn blocks_sight_yet(&self, a: DVec2, b: DVec2, step: u64) -> bool {
-        let Some(sweep) = &self.sweep else { return false };
-        !self.convex && sweep.touches(a, b, self.passed(step))
-    }
-
-    /// Whether sight is never blocked: a convex blade without cuts.
-    #[must_use]
-    pub fn is_convex(&self) -> bool {
-        self.convex
     }
 
     /// How large the tissue at a place is, by area and relative to the mature leaf.

@@ -6,6 +6,7 @@
 pub mod auxin;
 pub mod bow;
 pub mod chains;
+mod cut;
 mod error;
 pub mod flow;
 pub mod graph;
@@ -96,12 +97,9 @@ fn auxin(
     }
     let mut rng = seed.stream(Stage::AuxinSources);
     let grown = auxin::grow(spec, blade, start, &mut rng, observer)?;
-    let graph = grown.graph.mapped(|p| blade.finished_from_mature(p));
-    // Not for particles, whose every tip is one of them.
-    let (graph, nodes_after_step) = prune::pruned(spec, graph, grown.nodes_after_step);
     Ok(Raw {
-        graph,
-        nodes_after_step,
+        graph: grown.graph.mapped(|p| blade.finished_from_mature(p)),
+        nodes_after_step: grown.nodes_after_step,
         tip_radius_mm: spec.tip_radius_mm,
         sources: grown.sources,
         unreached: grown.unreached,
@@ -119,9 +117,13 @@ fn trails(
     let roots: Vec<DVec2> = roots.iter().map(|&p| blade.finished_from_mature(p)).collect();
     let mut rng = seed.stream(Stage::Particles);
     let flowed = particles::grow(&spec.particles, blade.finished(), &roots, &mut rng, observer)?;
+    let graph = match spec.longest_step {
+        0.0 => flowed.graph,
+        steps => cut::cut(&flowed.graph, steps * spec.particles.step_mm),
+    };
     Ok(Raw {
-        nodes_after_step: vec![flowed.graph.len() as u32],
-        graph: flowed.graph,
+        nodes_after_step: vec![graph.len() as u32],
+        graph,
         // Every tip is one particle: Murray's law on tips is his law on energy.
         tip_radius_mm: widths::radius(
             spec.tip_radius_mm,
@@ -161,7 +163,7 @@ impl<'a> Refining<'a> {
     }
 }
 
-/// Junctions and courses as in a real leaf, then widths and orders.
+/// Stubs away, junctions and courses as in a real leaf, then widths and orders.
 fn finished(
     spec: &VeinSpec,
     margin: &Margin,
@@ -170,7 +172,8 @@ fn finished(
     observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
     let mut refining = Refining::begin(spec, observer, raw.graph.len());
-    let (graph, nodes_after_step) = split::split(spec, margin, raw.graph, raw.nodes_after_step);
+    let (graph, nodes_after_step) = prune::pruned(spec, raw.graph, raw.nodes_after_step);
+    let (graph, nodes_after_step) = split::split(spec, margin, graph, nodes_after_step);
     refining.one_more();
     // Before smoothing: it puts nodes between, and balance asks for junctions only.
     let graph = relax::relaxed(spec, margin, graph, || refining.one_more());

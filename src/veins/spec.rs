@@ -34,8 +34,8 @@ parameters! {
     pub struct VeinSpec {
         /// How veins are made.
         algorithm: choice(Algorithm, Algorithm::AuxinOpen),
-        /// Times all lengths of grown veins, the radius of the finest included; darts are as many more as
-        /// there is room for. 0.43 gives a beech the areoles of a real one: 10 mm of vein to the mm².
+        /// Times all lengths of veins that grow or flow, the radius of the finest included; darts are as many
+        /// more as there is room for. What is laid down (`guides`, `convergence`) stays. 0.43 gives a beech the areoles of a real one: 10 mm of vein to the mm².
         scale: number(1.0, 0.1..=10.0, ""),
         /// Auxin darts thrown per step at full size; more gives a denser pattern.
         spawn_rate: number(60.0, 0.0..=100_000.0, "darts/step"),
@@ -48,7 +48,8 @@ parameters! {
         /// How far a vein grows in one step.
         node_step_mm: number(0.3, 0.001..=100.0, "mm"),
         /// No step of a vein that grows in a small leaf becomes longer than this once the leaf is grown;
-        /// 0 for no limit. Long ones have no nodes from which veins could branch.
+        /// 0 for no limit. Long ones have no nodes from which veins could branch. Trails of particles are
+        /// cut to so many `particles.step_mm`.
         longest_step: number(0.0, 0.0..=1000.0, "steps"),
         /// A source calls veins within this distance only; 0 for no limit.
         attraction_distance_mm: number(0.0, 0.0..=10_000.0, "mm"),
@@ -128,8 +129,12 @@ impl VeinSpec {
             &mut spec.kill_distance_mm,
             &mut spec.node_step_mm,
             &mut spec.attraction_distance_mm,
+            &mut spec.symmetry_jitter_mm,
             &mut spec.tip_radius_mm,
             &mut spec.least_radius_mm,
+            &mut spec.particles.spacing_mm,
+            &mut spec.particles.step_mm,
+            &mut spec.particles.merge_radius_mm,
         ] {
             *length *= self.scale;
         }
@@ -155,4 +160,69 @@ pub(super) fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         return Err(VeinError::setting("veins.kill_distance_mm", spec.kill_distance_mm, problem));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use serde_json::Value;
+
+    /// Calls `visit` with the dotted key of every number.
+    fn for_each_number(key: &str, value: &mut Value, visit: &mut impl FnMut(&str, &mut Value)) {
+        match value {
+            Value::Object(group) => {
+                for (name, value) in group {
+                    let key = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
+                    for_each_number(&key, value, visit);
+                }
+            }
+            Value::Array(list) => {
+                list.iter_mut().for_each(|value| for_each_number(key, value, visit))
+            }
+            Value::Number(_) => visit(key, value),
+            _ => {}
+        }
+    }
+
+    fn numbers(spec: &VeinSpec) -> Vec<(String, f64)> {
+        let mut found = Vec::new();
+        let mut value = serde_json::to_value(spec).expect("plain data");
+        for_each_number("", &mut value, &mut |key, value| {
+            found.push((key.to_owned(), value.as_f64().expect("a number")));
+        });
+        found
+    }
+
+    proptest! {
+        #[test]
+        fn scaling_multiplies_lengths_and_nothing_else(scale in 0.1..10.0f64, draw in 0.1..3.0f64) {
+            // Every number another, so that none is 0.
+            let points = vec![[1.0, 2.0]];
+            let spec = VeinSpec { sources_mm: points, ..VeinSpec::default() };
+            let mut value = serde_json::to_value(spec).expect("plain data");
+            let mut next = draw;
+            for_each_number("", &mut value, &mut |_, value| {
+                next += 0.1;
+                *value = if value.is_u64() { Value::from(next as u64 + 1) } else { Value::from(next) };
+            });
+            value["scale"] = Value::from(scale);
+            let spec: VeinSpec = serde_json::from_value(value).expect("the same settings");
+            let mut lengths = 0;
+            for ((key, was), (_, is)) in numbers(&spec).into_iter().zip(numbers(&spec.scaled())) {
+                let is_laid = ["sources_mm", "guides.", "convergence."].iter().any(|k| key.starts_with(k));
+                let expected = match key.as_str() {
+                    "scale" => 1.0,
+                    "spawn_rate" => was / (scale * scale),
+                    _ if key.ends_with("_mm") && !is_laid => {
+                        lengths += 1;
+                        was * scale
+                    }
+                    _ => was,
+                };
+                prop_assert_eq!(is, expected, "{}", key);
+            }
+            prop_assert_eq!(lengths, 11);
+        }
+    }
 }

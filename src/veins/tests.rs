@@ -79,3 +79,30 @@ fn widths_of_a_whole_leaf_hold_what_they_promise() {
         assert!(least >= 0.03, "{settings:?}: {least}");
     }
 }
+
+#[test]
+fn trails_of_particles_heed_the_limits_of_steps_and_veinlets() {
+    let grow = |setting: &str| {
+        let plain = ["veins.algorithm=particles", "veins.relaxation=0", "veins.smoothing=0"];
+        let still = ["veins.sinuosity=0", "veins.longest_step=0", "veins.least_veinlet=0"];
+        let settings: Vec<&str> = plain.into_iter().chain(still).chain([setting]).collect();
+        beech(&settings).venation
+    };
+    let longest = |veins: &Venation| {
+        let at = |node: NodeId| veins.graph().positions()[node as usize];
+        veins.graph().edges().map(|(a, b)| at(a).distance(at(b))).fold(0.0, f64::max)
+    };
+    let free = grow("veins.longest_step=0");
+    let cut = grow("veins.longest_step=1");
+    let step = particles::ParticleSpec::default().step_mm;
+    assert!(longest(&free) > 1.5 * step, "{}", longest(&free));
+    assert!(longest(&cut) <= step * (1.0 + 1e-9), "{}", longest(&cut));
+    let tips =
+        |veins: &Venation| veins.graph().child_counts().iter().filter(|&&count| count == 0).count();
+    assert_eq!(tips(&cut), tips(&free));
+    // 6 times 0.21 mm.
+    let pruned = grow("veins.least_veinlet=6");
+    assert!(tips(&pruned) < tips(&free), "{} of {}", tips(&pruned), tips(&free));
+    let finer = grow("veins.scale=0.5");
+    assert!(tips(&finer) > 3 * tips(&free), "{} and {}", tips(&finer), tips(&free));
+}

@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::calls::Calls;
-use super::extend::Nodes;
 use super::field::Field;
+use super::nodes::Nodes;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};

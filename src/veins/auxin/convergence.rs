@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use super::super::VeinSpec;
 use super::super::graph::{NodeId, Rank, VeinKind};
-use super::extend::Nodes;
+use super::nodes::Nodes;
 use crate::growth::{GrowingBlade, Metric};
 use crate::margin::LandmarkKind;
 use crate::parameter::parameters;

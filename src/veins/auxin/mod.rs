@@ -22,6 +22,7 @@ mod field;
 mod habit;
 mod horizon;
 mod neighbours;
+mod nodes;
 mod open;
 mod sources;
 mod tiles;
@@ -35,10 +36,10 @@ use crate::seed::Rng;
 use callers::Callers;
 use convergence::Convergence;
 pub use convergence::ConvergenceSpec;
-pub(crate) use extend::LEAST_BETWEEN_NODES;
-use extend::{Meeting, Nodes};
 use habit::Steering;
 pub use habit::{DensitySpec, PhaseSpec};
+pub(crate) use nodes::LEAST_BETWEEN_NODES;
+use nodes::{Meeting, Nodes};
 use sources::Supply;
 
 /// No node, no source.

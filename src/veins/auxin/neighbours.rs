@@ -18,8 +18,8 @@
 use glam::DVec2;
 
 use super::NONE;
-use super::extend::Nodes;
 use super::horizon::{Horizon, WEDGES};
+use super::nodes::Nodes;
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::callers::Callers;
-use super::extend::Nodes;
 use super::habit::{self, Density};
+use super::nodes::Nodes;
 use crate::geometry::point_grid::PointGrid;
 use crate::geometry::scatter::PolygonScatter;
 use crate::geometry::z_order::z_order;

@@ -30,6 +30,7 @@ mod matching;
 mod planter;
 mod primary;
 mod rim;
+mod rows;
 mod secondary;
 mod targets;
 mod tertiary;
@@ -238,7 +239,7 @@ fn planted<T>(
     let mut planter = Planter::new(&ground, step);
     if guides.given.is_empty() {
         let primaries = primary::lay(guides, &mut planter, rng);
-        secondary::lay(guides, &mut planter, &primaries, rng);
+        rows::lay(guides, &mut planter, &primaries, rng);
     } else {
         given::lay(&guides.given, &mut planter);
     }

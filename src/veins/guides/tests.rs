@@ -75,8 +75,11 @@ fn any_spec() -> impl Strategy<Value = GuideSpec> {
         (1u64..12, 0u64..14, 0u64..6),
         (20.0..150.0f64, 20.0..85.0f64, -30.0..20.0f64, -0.2..0.9f64),
         (0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64, 0.0..2.0f64),
+        (0..TertiaryType::ALL.len(), 0.02..0.1f64),
     )
-        .prop_map(|((p, s, r), counts, angles, shares)| GuideSpec {
+        .prop_map(|((p, s, r), counts, angles, shares, (t, spacing))| GuideSpec {
+            tertiary: TertiaryType::ALL[t],
+            tertiary_spacing: spacing,
             primary: PrimaryType::ALL[p],
             secondary: SecondaryType::ALL[s],
             rim: RimType::ALL[r],
@@ -111,6 +114,47 @@ proptest! {
         let graph = laid(spec.clone(), &margin, seed);
         prop_assert_eq!(broken(&graph, &margin), None);
         prop_assert_eq!(&graph, &laid(spec, &margin, seed));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn tertiaries_change_no_other_vein_and_end_as_their_type_says(
+        spec in any_spec(),
+        kind in 1..TertiaryType::ALL.len(),
+        seed in 0u64..1000,
+    ) {
+        let margin = oval();
+        let spec = GuideSpec { tertiary: TertiaryType::ALL[kind], ..spec };
+        let bare = laid(GuideSpec { tertiary: TertiaryType::None, ..spec.clone() }, &margin, seed);
+        let graph = laid(spec.clone(), &margin, seed);
+        // They come last: all that was there stays as it was.
+        prop_assert_eq!(&graph.positions()[..bare.len()], bare.positions());
+        prop_assert_eq!(&graph.joins()[..bare.joins().len()], bare.joins());
+        let spacing = spec.tertiary_spacing * margin.length_mm();
+        let (fresh, joins) = (bare.len() as NodeId.., &graph.joins()[bare.joins().len()..]);
+        let (mut firsts, mut path) = (0, vec![0.0; graph.len()]);
+        for node in fresh.take_while(|&node| (node as usize) < graph.len()) {
+            prop_assert_eq!(graph.rank(node).map(|rank| rank.kind), Some(VeinKind::Tertiary));
+            let parent = graph.parent(node).expect("no root");
+            let [a, b] = [parent, node].map(|node| graph.positions()[node as usize]);
+            if parent < bare.len() as NodeId {
+                firsts += 1;
+            }
+            path[node as usize] = path[parent as usize] + a.distance(b);
+            // Leaning and bent, from one vein to the next.
+            prop_assert!(path[node as usize] < 1.5 * 14.0 * spacing, "{} of {}", path[node as usize], spacing);
+        }
+        match spec.tertiary {
+            TertiaryType::Ramified => prop_assert!(joins.is_empty(), "they end free"),
+            _ => prop_assert!(joins.len() <= firsts, "{} ends of {}", joins.len(), firsts),
+        }
+        // A rung joins what it has come to, but where the way there is not clear.
+        if spec.tertiary == TertiaryType::Percurrent {
+            prop_assert!(3 * joins.len() >= 2 * firsts, "{} ends of {}", joins.len(), firsts);
+        }
     }
 }
 

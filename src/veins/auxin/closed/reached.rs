@@ -1,8 +1,8 @@
 //! Sources that a vein has come to: whom they still wait for, and what meets at their place.
 
 use super::super::NONE;
-use super::super::extend::Nodes;
 use super::super::neighbours::SECTORS;
+use super::super::nodes::Nodes;
 use super::{At, PATIENCE, Sources, Tag};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;

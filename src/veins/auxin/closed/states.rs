@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::super::NONE;
-use super::super::extend::Nodes;
 use super::super::field::{Hit, Told};
 use super::super::neighbours::Around;
+use super::super::nodes::Nodes;
 use super::{Sources, State};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;

@@ -4,8 +4,10 @@
 //! ends after a step or two. In cleared leaves a veinlet that ends free reaches well into its areole;
 //! shorter ones are bumps on the side of a vein, and readers of pictures drop them, too.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use super::VeinSpec;
-use super::chains::{Chain, Chains};
 use super::graph::{NodeId, VeinGraph};
 
 /// A graph without free-ending veins shorter than `veins.least_veinlet`, and how many of its nodes there
@@ -20,47 +22,75 @@ pub fn pruned(
     if least == 0.0 {
         return (graph, nodes_after_step);
     }
-    let mut made = (graph, nodes_after_step);
-    loop {
-        let goes = stubs(&made.0, least);
-        if !goes.contains(&true) {
-            return made;
-        }
-        made = without(&made.0, &made.1, &goes);
+    let goes = stubs(&graph, least);
+    if goes.contains(&true) {
+        without(&graph, &nodes_after_step, &goes)
+    } else {
+        (graph, nodes_after_step)
     }
 }
 
-/// The nodes of all veins shorter than `least` that end free, their junctions excepted.
+/// The nodes of all veins shorter than `least` that end free, their junctions excepted: the shortest
+/// first, since what is left at its junction is one vein then, and longer.
 fn stubs(graph: &VeinGraph, least: f64) -> Vec<bool> {
-    let Chains { chains, at } = Chains::of(graph);
-    let at_end = |node: NodeId| at[node as usize].len() == 1 && graph.parent(node).is_some();
-    let length = |chain: &Chain| -> f64 {
-        let place = |node: NodeId| graph.positions()[node as usize];
-        chain.nodes.windows(2).map(|pair| place(pair[0]).distance(place(pair[1]))).sum()
-    };
+    let mut degrees = vec![0u32; graph.len()];
+    for (a, b) in graph.edges().chain(graph.joins().iter().copied()) {
+        degrees[a as usize] += 1;
+        degrees[b as usize] += 1;
+    }
     let mut goes = vec![false; graph.len()];
-    // The longer of two stubs at one node stays: it is looked at again without the other.
-    let mut touched = vec![false; graph.len()];
-    let mut short: Vec<(f64, &Chain)> = chains
-        .iter()
-        .map(|chain| (length(chain), chain))
-        .filter(|&(long, _)| long < least)
-        .collect();
-    short.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (_, chain) in short {
-        let last = chain.nodes.len() - 1;
-        let (hub, rest) = match (at_end(chain.nodes[0]), at_end(chain.nodes[last])) {
-            (true, false) => (chain.nodes[last], &chain.nodes[..last]),
-            (false, true) => (chain.nodes[0], &chain.nodes[1..]),
-            _ => continue,
-        };
-        let is_grown = rest.iter().all(|&node| graph.rank(node).is_none());
-        if is_grown && at[hub as usize].len() > 2 && !touched[hub as usize] {
-            touched[hub as usize] = true;
-            rest.iter().for_each(|&node| goes[node as usize] = true);
+    let mut waiting = BinaryHeap::new();
+    // In the order of lengths, which are not negative.
+    let key = |stub: &Stub, tip: NodeId| Reverse((stub.length.to_bits(), tip));
+    let tips = (0..graph.len() as NodeId).filter(|&node| degrees[node as usize] == 1);
+    for tip in tips {
+        waiting.extend(Stub::at(graph, &degrees, tip, least).map(|stub| key(&stub, tip)));
+    }
+    while let Some(entry) = waiting.pop() {
+        let Reverse((_, tip)) = entry;
+        let Some(stub) = Stub::at(graph, &degrees, tip, least) else { continue };
+        if key(&stub, tip) != entry {
+            // It has become longer since.
+            waiting.push(key(&stub, tip));
+            continue;
         }
+        let mut node = tip;
+        while node != stub.hub {
+            goes[node as usize] = true;
+            node = graph.parent(node).unwrap_or(stub.hub);
+        }
+        degrees[stub.hub as usize] -= 1;
     }
     goes
+}
+
+/// A vein that may go.
+struct Stub {
+    /// The junction it hangs on.
+    hub: NodeId,
+    length: f64,
+}
+
+impl Stub {
+    /// The vein that ends in a tip, if it grew out of a junction and is shorter than `least`.
+    fn at(graph: &VeinGraph, degrees: &[u32], tip: NodeId, least: f64) -> Option<Self> {
+        let (mut node, mut length) = (tip, 0.0);
+        loop {
+            if graph.rank(node).is_some() {
+                return None;
+            }
+            let hub = graph.parent(node)?;
+            let place = |node: NodeId| graph.positions()[node as usize];
+            length += place(node).distance(place(hub));
+            if length >= least {
+                return None;
+            }
+            if degrees[hub as usize] != 2 {
+                return (degrees[hub as usize] > 2).then_some(Self { hub, length });
+            }
+            node = hub;
+        }
+    }
 }
 
 /// The graph without the nodes that go.

@@ -178,7 +178,7 @@ mod tests {
                 }
             }
             Value::Array(list) => {
-                list.iter_mut().for_each(|value| for_each_number(key, value, visit))
+                list.iter_mut().for_each(|value| for_each_number(key, value, visit));
             }
             Value::Number(_) => visit(key, value),
             _ => {}

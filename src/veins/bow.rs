@@ -3,8 +3,8 @@
 //! In cleared leaves a segment of the net is 1 to 4 hundredths longer than its chord: it bows to one
 //! side or sways. Grown veins that were relaxed are nearly straight. Here the nodes between two
 //! junctions move aside, by an arch and a wave whose heights are drawn for every segment; junctions, ends
-//! and guided veins stay. A segment that would touch another vein or the margin bows less, or not at
-//! all.
+//! and guided veins stay. A segment that would touch another vein or the margin, or be drawn out to long
+//! straight pieces, bows less, or not at all.
 
 use glam::DVec2;
 
@@ -24,6 +24,9 @@ const WAVE: f64 = 0.5;
 
 /// A bow is no longer than this (steps): long veins sway, segment after segment.
 const LONGEST: f64 = 8.0;
+
+/// A bow draws no edge out beyond this (steps): it would show as a straight piece.
+const LONGEST_EDGE: f64 = 1.8;
 
 /// A graph in `margin` with the bows that `veins.sinuosity` asks for; as it is at 0.
 #[must_use]
@@ -47,6 +50,13 @@ pub fn bowed(spec: &VeinSpec, margin: &Margin, graph: VeinGraph, rng: &mut Rng) 
         let before: Vec<DVec2> = nodes.iter().map(|&node| positions[node as usize]).collect();
         for share in [1.0, 0.5, 0.25] {
             let after = aside(&before, heights.map(|h| h * share * spec.sinuosity), longest);
+            let is_drawn_out = before.windows(2).zip(after.windows(2)).any(|(was, is)| {
+                let long = is[0].distance(is[1]);
+                long > LONGEST_EDGE * spec.node_step_mm && long > was[0].distance(was[1])
+            });
+            if is_drawn_out {
+                continue;
+            }
             nodes.iter().zip(&after).for_each(|(&node, &p)| positions[node as usize] = p);
             if around.are_clear(nodes, &positions) {
                 around.moved(nodes, &positions);

@@ -230,7 +230,9 @@ impl Case {
                 // The paper's pixel: that in which this blade is as large as its ivy.
                 let pixel = (margin::build(&spec.margin, Seed(1))?.area_mm2() / IVY_PX2).sqrt();
                 spec.veins.algorithm = Algorithm::Particles;
-                spec.veins.scale = 1.0;
+                // As printed: every particle has its vein.
+                (spec.veins.scale, spec.veins.least_veinlet) = (1.0, 0.0);
+                spec.veins.longest_step = 0.0;
                 let particles = &mut spec.veins.particles;
                 particles.pattern = pattern;
                 particles.spacing_mm = px as f64 * pixel;

@@ -131,7 +131,7 @@ impl FractalRow {
     ///
     /// Outside of them.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, mut x: f32) -> f32 {
         let (mut sum, mut weight) = (0.0, self.per_total);
         for row in &self.octaves {

@@ -53,9 +53,33 @@ impl NearestByRows {
     ///
     /// If a side is longer than 16 384: squared distances would leave 32 bits.
     #[must_use]
-    pub fn new(width: usize, height: usize, is_site: impl Fn(usize) -> bool + Sync) -> Self {
+    pub fn new(width: usize, height: usize, is_site: impl Fn(usize) -> bool) -> Self {
+        Self::of_rows(width, height, |y| {
+            let is_site = &is_site;
+            (0..width, move |x: usize| is_site(y * width + x))
+        })
+    }
+
+    /// The sites of a square, each row of which has some among its columns.
+    ///
+    /// # Panics
+    ///
+    /// If a side is longer than 16 384.
+    #[must_use]
+    pub fn within<F: Fn(usize) -> bool>(
+        size: usize,
+        row: impl Fn(usize) -> (std::ops::Range<usize>, F),
+    ) -> Self {
+        Self::of_rows(size, size, row)
+    }
+
+    fn of_rows<F: Fn(usize) -> bool>(
+        width: usize,
+        height: usize,
+        row: impl Fn(usize) -> (std::ops::Range<usize>, F),
+    ) -> Self {
         assert!(width.max(height) <= 1 << 14, "squared distances need to fit 32 bits");
-        Self { width, column_sites: nearest_in_columns(width, height, &is_site) }
+        Self { width, column_sites: nearest_in_columns(width, height, row) }
     }
 
     /// Calls `each` with every run of row `y`, from left to right, and the index of its site. There is
@@ -81,23 +105,22 @@ impl NearestByRows {
 const NO_ROW: u16 = u16::MAX;
 
 /// For every pixel the row of the nearest site in its column.
-fn nearest_in_columns(
+fn nearest_in_columns<F: Fn(usize) -> bool>(
     width: usize,
     height: usize,
-    is_site: &(impl Fn(usize) -> bool + Sync),
+    row: impl Fn(usize) -> (std::ops::Range<usize>, F),
 ) -> Vec<u16> {
-    let mut rows = vec![NO_ROW; width * height];
+    let mut rows = Vec::with_capacity(width * height);
     for y in 0..height {
-        let (above, here) = rows.split_at_mut(y * width);
-        let above = &above[y.saturating_sub(1) * width..];
-        for x in 0..width {
-            here[x] = if is_site(y * width + x) {
-                y as u16
-            } else if y > 0 {
-                above[x]
-            } else {
-                NO_ROW
-            };
+        if y == 0 {
+            rows.resize(width, NO_ROW);
+        } else {
+            rows.extend_from_within((y - 1) * width..y * width);
+        }
+        let (columns, is_site) = row(y);
+        let here = &mut rows[y * width..];
+        for x in columns {
+            here[x] = if is_site(x) { y as u16 } else { here[x] };
         }
     }
     for y in (0..height.saturating_sub(1)).rev() {

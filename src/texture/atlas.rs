@@ -9,6 +9,7 @@ use glam::DVec2;
 use super::map::MapSet;
 use super::pigment::Albedo;
 use super::side::SideMaps;
+use super::spans::Spans;
 use super::{TextureSet, dilation};
 use crate::raster::Grid;
 use crate::units::TextureFrame;
@@ -110,7 +111,8 @@ impl AtlasSheet {
                 rescale(&mut side.thickness, rect, thickness, 0.0);
             }
         }
-        dilation::spread(&mut self.front, &mut self.back);
+        let whole = Spans::whole(self.front.size());
+        dilation::spread(&mut self.front, &mut self.back, &whole);
         TextureSet {
             frame: TextureFrame { min: DVec2::ZERO, side_mm: size as f64 / pixels_per_mm },
             front: self.front,

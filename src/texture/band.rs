@@ -5,6 +5,8 @@ use std::ops::Range;
 use super::brush::Painted;
 use super::deep::Deep;
 use super::fields::VeinRows;
+use super::guide::MixedRow;
+use super::map::MapKind;
 use super::petiole::StalkAt;
 use super::scene::Scene;
 use super::side::SideMaps;
@@ -34,7 +36,7 @@ pub(super) struct SideRows<'a> {
 #[derive(Default)]
 pub(super) struct Scratch {
     veins: VeinRows,
-    nodes: Vec<[f32; 8]>,
+    guide: MixedRow,
 }
 
 /// A band of rows to be painted, with whatever vector instructions the processor has: no result depends
@@ -48,10 +50,11 @@ pub(super) struct Band<'a> {
 }
 
 impl pulp::WithSimd for Band<'_> {
-    type Output = ();
+    type Output = Vec<Range<usize>>;
 
+    /// Where in each row something was painted.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<Range<usize>> {
         let Self { scene, number, rows, sides, scratch } = self;
         let size = scene.size;
         let cover = scene.blade_cover(rows.clone());
@@ -60,9 +63,10 @@ impl pulp::WithSimd for Band<'_> {
         let painted = spans.iter().filter(|span| !span.is_empty());
         let Some(columns) = painted.cloned().reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
         else {
-            return;
+            return spans;
         };
-        scene.strokes.fill(number, rows.clone(), size, &mut scratch.veins);
+        let orders = scene.maps.has(MapKind::VeinOrder);
+        scene.strokes.fill(number, rows.clone(), size, orders, &mut scratch.veins);
         let at = |x: usize, y: usize| {
             let [left, bottom] = scene.frame.min.as_vec2().to_array();
             [left + x as f32 / scene.per_mm, bottom + (size - y) as f32 / scene.per_mm]
@@ -76,7 +80,7 @@ impl pulp::WithSimd for Band<'_> {
                 continue;
             }
             let line = y - rows.start;
-            let guide = scene.guide.row(y, &mut scratch.nodes);
+            let guide = scene.guide.row(y, &mut scratch.guide);
             let wounds = scene.wounds.as_ref().map(|wounds| wounds.row(y));
             let [left, low] = at(span.start, y + 1);
             let height = low + 0.5 / scene.per_mm;
@@ -101,6 +105,7 @@ impl pulp::WithSimd for Band<'_> {
                 back.put(1, behind, scene, &strip, &painted);
             }
         }
+        spans
     }
 }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::side::SideMaps;
+use super::spans::Spans;
 use crate::raster::distance::{Envelope, NearestByRows};
 
 /// Empty texels of one row, and where what fills them is found.
@@ -29,28 +30,39 @@ pub(super) struct Empty {
     mirrored: bool,
 }
 
-/// Fills both sides of a leaf, which cover the same texels, the back mirrored.
-pub(super) fn spread(front: &mut SideMaps, back: &mut SideMaps) {
-    let mut empty = Empty::of(front);
+/// Fills both sides of a leaf, which cover the same texels, the back mirrored. The front has none outside
+/// of `spans`.
+pub(super) fn spread(front: &mut SideMaps, back: &mut SideMaps, spans: &Spans) {
+    let mut empty = Empty::of(front, spans);
     front.spread(&empty);
     empty.mirrored = true;
     back.spread(&empty);
 }
 
 impl Empty {
-    fn of(side: &SideMaps) -> Self {
+    fn of(side: &SideMaps, spans: &Spans) -> Self {
         let size = side.size();
         let colours = &side.base_colour;
-        let nearest = NearestByRows::new(size, size, |i| colours.values()[i][3] == u8::MAX);
-        let of_row = |envelope: &mut Envelope, y: usize| {
+        let nearest = NearestByRows::within(size, |y| {
             let row = colours.row(y);
+            (spans.row(y), move |x: usize| row[x][3] == u8::MAX)
+        });
+        let of_row = |envelope: &mut Envelope, y: usize| {
+            let (row, span) = (colours.row(y), spans.row(y));
             let mut runs = Vec::new();
             nearest.runs(y, envelope, |columns, source| {
-                let mut rest = columns;
+                let mut put = |gap: Range<usize>| {
+                    if !gap.is_empty() {
+                        runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
+                    }
+                };
+                put(columns.start..columns.end.min(span.start));
+                let mut rest = columns.start.max(span.start)..columns.end.min(span.end);
                 while let Some(gap) = gap(row, rest.clone()) {
                     rest.start = gap.end;
-                    runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
+                    put(gap);
                 }
+                put(columns.start.max(span.end).max(span.start)..columns.end);
             });
             runs
         };
@@ -93,7 +105,7 @@ impl Empty {
 
 /// The first texels in a row, within some columns, that are empty.
 fn gap(row: &[[u8; 4]], columns: Range<usize>) -> Option<Range<usize>> {
-    let texels = &row[columns.clone()];
+    let texels = row.get(columns.clone())?;
     let start = texels.iter().position(|texel| texel[3] == 0)?;
     let length = texels[start..].iter().position(|texel| texel[3] != 0);
     let end = length.map_or(columns.end, |length| columns.start + start + length);

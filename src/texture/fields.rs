@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::pen::{Axis, BLOCK, Pen, block};
 use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
@@ -33,9 +34,9 @@ const TIP: f64 = 0.35;
 /// The veins of a leaf as strokes on its texture (pixels).
 #[derive(Debug)]
 pub(super) struct Strokes {
+    /// Those that pass through each band of rows, `strokes[starts[i]..starts[i + 1]]`; one that passes
+    /// through several stands in each.
     strokes: Vec<Stroke>,
-    /// Which of them pass through each band of rows: `at[starts[i]..starts[i + 1]]`.
-    at: Vec<u32>,
     starts: Vec<usize>,
     mm: f32,
 }
@@ -64,12 +65,13 @@ pub(super) struct VeinAt {
 /// What the veins are over some rows, row by row; see [`VeinAt`].
 #[derive(Debug, Default)]
 pub(super) struct VeinRows {
-    pub width: usize,
+    /// From row to row: the width, and some texels that a stroke at the end may run over into.
+    pub stride: usize,
     pub cover: Vec<f32>,
     pub radius: Vec<f32>,
     pub dome: Vec<f32>,
     pub groove: Vec<f32>,
-    /// Order of the vein, 0 for none; of several the lowest.
+    /// Order of the vein, 0 for none; of several the lowest. Empty where nobody asks.
     pub order: Vec<u8>,
     /// How much of a texel's vein is seen; of two veins the one that shows more counts.
     shows: Vec<f32>,
@@ -77,16 +79,17 @@ pub(super) struct VeinRows {
 
 impl VeinRows {
     /// Empty rows.
-    fn clear(&mut self, width: usize, rows: usize) {
-        self.width = width;
+    fn clear(&mut self, width: usize, rows: usize, orders: bool) {
+        self.stride = width + BLOCK;
+        let texels = self.stride * rows;
         let planes =
             [&mut self.cover, &mut self.radius, &mut self.dome, &mut self.groove, &mut self.shows];
         for plane in planes {
             plane.clear();
-            plane.resize(width * rows, 0.0);
+            plane.resize(texels, 0.0);
         }
         self.order.clear();
-        self.order.resize(width * rows, 0);
+        self.order.resize(if orders { texels } else { 0 }, 0);
     }
 }
 
@@ -133,39 +136,41 @@ impl Strokes {
                 Stroke { capsule, order, reach }
             })
             .collect();
-        let (starts, at) = sorted(&strokes, size, band);
-        Self { strokes, at, starts, mm: (1.0 / pixels_per_mm) as f32 }
+        let (starts, strokes) = sorted(&strokes, size, band);
+        Self { strokes, starts, mm: (1.0 / pixels_per_mm) as f32 }
     }
 
-    /// The veins over a band of rows of the texture.
+    /// The veins over a band of rows of the texture; their orders where they are asked for.
     #[inline(always)]
-    pub(super) fn fill(&self, band: usize, rows: Range<usize>, width: usize, out: &mut VeinRows) {
-        out.clear(width, rows.len());
-        for &stroke in &self.at[self.starts[band]..self.starts[band + 1]] {
-            let stroke = &self.strokes[stroke as usize];
+    pub(super) fn fill(
+        &self,
+        band: usize,
+        rows: Range<usize>,
+        width: usize,
+        orders: bool,
+        out: &mut VeinRows,
+    ) {
+        out.clear(width, rows.len(), orders);
+        for stroke in &self.strokes[self.starts[band]..self.starts[band + 1]] {
             let [columns, lines] = stroke.capsule.pixels(stroke.reach, width, rows.clone());
+            let pen = Pen::new(&stroke.capsule, stroke.reach);
             for y in lines {
-                let across = stroke.columns(y, columns.clone());
-                let line = (y - rows.start) * width;
-                let texels = line + across.start..line + across.end;
-                let (x, y) = (across.start as i32, y as f32 + 0.5);
-                let VeinRows { cover, radius, dome, groove, order, shows, .. } = &mut *out;
-                stroke.draw(
-                    (x, y, self.mm),
-                    &mut cover[texels.clone()],
-                    &mut radius[texels.clone()],
-                    &mut dome[texels.clone()],
-                    &mut groove[texels.clone()],
-                    &mut shows[texels.clone()],
-                    &mut order[texels],
-                );
+                let row = (y - rows.start) * out.stride;
+                let on_row = pen.on_row(y);
+                for x in pen.columns(y, columns.clone()).step_by(BLOCK) {
+                    let (axis, texels) = (on_row.axis(x), row + x..row + x + BLOCK);
+                    out.draw(&axis, self.mm, texels.clone());
+                    if orders {
+                        out.label(&axis, stroke.order, texels);
+                    }
+                }
             }
         }
     }
 }
 
-/// Which strokes pass through each band: where each band's begin, and their numbers in order.
-fn sorted(strokes: &[Stroke], size: usize, band: usize) -> (Vec<usize>, Vec<u32>) {
+/// The strokes that pass through each band, in order, and where each band's begin.
+fn sorted(strokes: &[Stroke], size: usize, band: usize) -> (Vec<usize>, Vec<Stroke>) {
     let bands = |stroke: &Stroke| {
         let [_, lines] = stroke.capsule.pixels(stroke.reach, size, 0..size);
         if lines.is_empty() { 0..0 } else { lines.start / band..lines.end.div_ceil(band) }
@@ -179,10 +184,11 @@ fn sorted(strokes: &[Stroke], size: usize, band: usize) -> (Vec<usize>, Vec<u32>
     for i in 1..starts.len() {
         starts[i] += starts[i - 1];
     }
-    let (mut next, mut at) = (starts.clone(), vec![0; starts[starts.len() - 1]]);
-    for (number, stroke) in (0..).zip(strokes) {
+    let none = Stroke { capsule: Capsule::default(), order: 0, reach: 0.0 };
+    let (mut next, mut at) = (starts.clone(), vec![none; starts[starts.len() - 1]]);
+    for stroke in strokes {
         for i in bands(stroke) {
-            at[next[i]] = number;
+            at[next[i]] = *stroke;
             next[i] += 1;
         }
     }
@@ -230,69 +236,54 @@ const NECK_RADII: f64 = 30.0;
 /// full radius would make a thorn of every fine branch on the midrib.
 pub(super) const BRANCH_FLARE: f64 = 1.3;
 
-impl Stroke {
-    /// Of some columns those that can lie within reach in row `y`: a slanted stroke crosses few of its
-    /// box.
+impl VeinRows {
+    /// Draws a vein on some texels. Without a branch, so that all are drawn at once.
     #[inline(always)]
-    fn columns(&self, y: usize, columns: Range<usize>) -> Range<usize> {
-        let along = self.capsule.b - self.capsule.a;
-        if along.y.abs() < 0.1 * along.x.abs() || along.y == 0.0 {
-            return columns;
+    fn draw(&mut self, axis: &Axis, mm: f32, texels: Range<usize>) {
+        let Axis { distance2, radius: here } = axis;
+        let mut groove = block(&self.groove[texels.clone()]);
+        for i in 0..BLOCK {
+            let here2 = here[i] * here[i];
+            let wide = (1.0 - distance2[i] / (GROOVE_RADII * GROOVE_RADII * here2)).max(0.0);
+            let own = wide * wide * here[i] * mm;
+            groove[i] = if own > groove[i] { own } else { groove[i] };
         }
-        // Where the axis, drawn out, has the height of the row, and how far aside the reach goes.
-        let middle = self.capsule.a.x + (y as f32 + 0.5 - self.capsule.a.y) * along.x / along.y;
-        let aside = self.reach * along.length() / along.y.abs() + 1.0;
-        let clip = |x: f32| (x.max(0.0) as usize).clamp(columns.start, columns.end);
-        clip(middle - aside)..clip(middle + aside + 1.0)
-    }
-
-    /// Draws on texels of one row, of which the first is column `x`; `y` is their centres' height.
-    /// Without a branch, so that several texels can be drawn at once.
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "arrays apart from each other are what is quick")]
-    fn draw(
-        &self,
-        (x, y, mm): (i32, f32, f32),
-        cover: &mut [f32],
-        radius: &mut [f32],
-        dome: &mut [f32],
-        groove: &mut [f32],
-        shows: &mut [f32],
-        order: &mut [u8],
-    ) {
-        let Capsule { a, b, radius_a, radius_b } = self.capsule;
-        let along = b - a;
-        let length2 = along.length_squared();
-        let per_length2 = if length2 > 0.0 { 1.0 / length2 } else { 0.0 };
-        let dy = y - a.y;
-        let n = cover.len();
-        let (radius, dome, groove) = (&mut radius[..n], &mut dome[..n], &mut groove[..n]);
-        let (shows, order) = (&mut shows[..n], &mut order[..n]);
-        for i in 0..n {
-            let dx = (x + i as i32) as f32 + 0.5 - a.x;
-            let t = ((dx * along.x + dy * along.y) * per_length2).clamp(0.0, 1.0);
-            let (ex, ey) = (dx - along.x * t, dy - along.y * t);
-            let distance2 = ex * ex + ey * ey;
-            let here = radius_a + (radius_b - radius_a) * t;
-            let here2 = here * here;
-            let wide = (1.0 - distance2 / (GROOVE_RADII * GROOVE_RADII * here2)).max(0.0);
-            groove[i] = groove[i].max(wide * wide * here * mm);
-            dome[i] = dome[i].max((here2 - distance2).max(0.0).sqrt() * mm);
-            let half = (SOFT_EDGE * here).max(LEAST_HALF_PX);
-            let share = stroke_share(distance2.sqrt(), here, half);
+        self.groove[texels.clone()].copy_from_slice(&groove);
+        let mut dome = block(&self.dome[texels.clone()]);
+        for i in 0..BLOCK {
+            let own = (here[i] * here[i] - distance2[i]).max(0.0).sqrt() * mm;
+            dome[i] = if own > dome[i] { own } else { dome[i] };
+        }
+        self.dome[texels.clone()].copy_from_slice(&dome);
+        let mut shows = block(&self.shows[texels.clone()]);
+        let mut cover = block(&self.cover[texels.clone()]);
+        let mut radius = block(&self.radius[texels.clone()]);
+        for i in 0..BLOCK {
+            let half = (SOFT_EDGE * here[i]).max(LEAST_HALF_PX);
+            let share = stroke_share(distance2[i].sqrt(), here[i], half);
             // Of two veins the one that shows more: a fine branch inside its parent's soft edge
             // loses.
-            let here_mm = here * mm;
+            let here_mm = here[i] * mm;
             let seen = share * here_mm / (here_mm + SHOWS_MM);
             let more = seen > shows[i];
             cover[i] = if more { share } else { cover[i] };
             radius[i] = if more { here_mm } else { radius[i] };
             shows[i] = if more { seen } else { shows[i] };
+        }
+        self.shows[texels.clone()].copy_from_slice(&shows);
+        self.cover[texels.clone()].copy_from_slice(&cover);
+        self.radius[texels].copy_from_slice(&radius);
+    }
+
+    /// Notes a vein's order on some texels, where it is the lowest so far.
+    #[inline(always)]
+    fn label(&mut self, axis: &Axis, own: u8, texels: Range<usize>) {
+        let seen = axis.distance2.iter().zip(&axis.radius);
+        for (order, (distance2, here)) in self.order[texels].iter_mut().zip(seen) {
             // No finer than the texels, so that a label never falls into dashes.
             let labelled = here.max(LEAST_LABEL_PX);
-            let lowest = order[i] == 0 || self.order < order[i];
-            order[i] =
-                if lowest & (distance2 < labelled * labelled) { self.order } else { order[i] };
+            let lowest = *order == 0 || own < *order;
+            *order = if lowest & (*distance2 < labelled * labelled) { own } else { *order };
         }
     }
 }

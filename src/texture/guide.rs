@@ -7,13 +7,15 @@
 //! 0.36 deep inside, where nothing sharp depends on it; a test holds both.
 
 mod lattice;
+mod smooth;
+
+use std::ops::Range;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 pub(super) use self::lattice::Lattice;
 use self::lattice::vein_lines;
-use crate::geometry::noise;
+use self::smooth::{NOISE_NODES_MM, Smooth, SmoothFields};
 use crate::geometry::polygon;
 use crate::margin::Margin;
 use crate::units::TextureFrame;
@@ -49,21 +51,29 @@ impl Place {
     }
 }
 
-/// Feature sizes of the three noises (mm): across the leaf, between secondaries, around areoles.
-const NOISE_MM: [f32; 3] = [16.0, 4.5, 1.6];
-
 /// Wounds lie on a guide with at least so many nodes a side: they have edges, and a leaf of few texels is to
 /// lose no other tissue than one of many.
 pub(super) const NODES_OF_WOUNDS: usize = 512;
 
-/// The coarse grid.
+/// What has nothing sharp lies on no more nodes a side than these: on a leaf of 100 mm every fifth of a
+/// millimetre.
+const SMOOTH_NODES: usize = 512;
+
+/// Colour that spreads from a vein further than so many nodes of the guide (the vein itself is a fifteenth
+/// of that wide) lies on the smooth lattice.
+const WIDE_NODES: f32 = 16.0;
+
+/// The coarse grids.
 #[derive(Debug)]
 pub(super) struct Guide {
     side: usize,
     per_texel: f32,
-    nodes: Vec<[f32; 8]>,
+    /// Distance to the nearest vein, and weight of the colour that spreads from the narrow ones.
+    fine: Vec<[f32; 2]>,
     /// The node before each column of the texture, and how far towards the next one it lies.
     columns: Vec<(u32, f32)>,
+    smooth: Smooth,
+    smooth_columns: Vec<(u32, f32)>,
 }
 
 /// The reach of the schemes that spread from things.
@@ -97,65 +107,60 @@ impl Guide {
         seed: u32,
     ) -> Self {
         let lattice = Lattice { frame, side };
+        let coarse = Lattice { frame, side: side.min(SMOOTH_NODES) };
         let outline: Vec<_> = polygon::edges(margin.outline()).collect();
         let slits = margin.cuts().iter().flat_map(|cut| cut.windows(2).map(|w| (w[0], w[1])));
         let edges: Vec<_> = outline.iter().copied().chain(slits).collect();
         let veins: Vec<_> = vein_lines(venation, |_| true);
         let major: Vec<_> = vein_lines(venation, |order| order <= 2);
-        let margin_cells = (frame.side_mm / side as f64 * 3.0) as f32;
-        let edge = lattice.signed_distances(&edges, &outline, margin_cells);
-        let [major, veins] =
-            [&major, &veins].map(|lines| lattice.distances(lines, |i| edge[i] > -margin_cells));
-        let from_veins = lattice.vein_weights(venation, reach.vein_spread);
-        let speckle = lattice.speckle_weights(reach.speckles, reach.speckle_mm);
-        let mut nodes = vec![[0.0; 8]; side * side];
-        let noises = || [0, 1, 2].map(|k| noise::FractalRow::new(3 - k, seed ^ (k + 1)));
-        let fill = |noises: &mut [noise::FractalRow; 3], (y, row): (usize, &mut [[f32; 8]])| {
-            let inside = |x: &usize| edge[y * side + x] > -margin_cells;
-            let (first, last) = ((0..side).find(inside), (0..side).rev().find(inside));
-            let columns = first.zip(last).map_or(0..0, |(first, last)| first..last + 1);
-            if !columns.is_empty() {
-                let [left, right] =
-                    [columns.start, columns.end].map(|x| lattice.leaf(x, y).as_vec2());
-                for (noise, size) in noises.iter_mut().zip(NOISE_MM) {
-                    noise.prepare(left.x / size, right.x / size, left.y / size);
-                }
-            }
-            for (x, node) in row.iter_mut().enumerate() {
-                let i = y * side + x;
-                let mut place = Place {
-                    edge: edge[i],
-                    major: major[i],
-                    vein: veins[i],
-                    from_veins: from_veins[i],
-                    speckle: speckle[i],
-                    noise: [0.0; 3],
-                };
-                if columns.contains(&x) {
-                    let at = lattice.leaf(x, y).x as f32;
-                    place.noise = std::array::from_fn(|k| noises[k].at(at / NOISE_MM[k]));
-                }
-                *node = place.array();
-            }
-        };
-        nodes.par_chunks_mut(side).enumerate().for_each_init(noises, fill);
-        let per_texel = side as f32 / size as f32;
-        let columns = (0..size).map(|x| {
-            let (i, t) = between(x, per_texel, side);
-            (i as u32, t)
+        let margin_cells = 3.0 * coarse.spacing() as f32;
+        let edge = coarse.signed_distances(&edges, &outline, margin_cells);
+        let inside = |depth: &f32| *depth > -margin_cells;
+        let spans = edge.chunks(coarse.side).map(|row| {
+            let (first, last) = (row.iter().position(inside), row.iter().rposition(inside));
+            first.zip(last).map_or(0..0, |(first, last)| first..last + 1)
         });
-        Self { side, per_texel, nodes, columns: columns.collect() }
+        let spans: Vec<Range<usize>> = spans.collect();
+        // A vein reaches half as many nodes of a lattice with half as many.
+        let wide = WIDE_NODES * coarse.side as f32 / side as f32;
+        let smooth = SmoothFields {
+            side: coarse.side,
+            major: coarse.distances(&major, &spans),
+            speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
+            from_wide: coarse.vein_weights(venation, reach.vein_spread, wide..f32::INFINITY),
+            edge,
+            spans,
+        };
+        let fine_spans = smooth.spans_at(side);
+        let distances = lattice.distances(&veins, &fine_spans);
+        let from_narrow = lattice.vein_weights(venation, reach.vein_spread, 0.0..WIDE_NODES);
+        let fine = distances.into_iter().zip(from_narrow).map(|(vein, narrow)| [vein, narrow]);
+        let even = coarse.spacing() <= NOISE_NODES_MM;
+        let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);
+        let columns = |side: usize| {
+            let column = move |x: usize| {
+                let (i, t) = between(x, side as f32 / size as f32, side);
+                (i as u32, t)
+            };
+            (0..size).map(column).collect()
+        };
+        Self {
+            side,
+            per_texel: side as f32 / size as f32,
+            fine: fine.collect(),
+            columns: columns(side),
+            smooth_columns: columns(smooth.side),
+            smooth,
+        }
     }
 
-    /// The guide along row `y` of the texture; `nodes` is overwritten.
+    /// The guide along row `y` of the texture; `mixed` is overwritten.
     #[inline(always)]
-    pub(super) fn row<'a>(&'a self, y: usize, nodes: &'a mut Vec<[f32; 8]>) -> GuideRow<'a> {
-        let (i, t) = between(y, self.per_texel, self.side);
-        let lower = &self.nodes[i * self.side..(i + 1) * self.side];
-        let upper = &self.nodes[(i + 1) * self.side..(i + 2) * self.side];
-        nodes.clear();
-        nodes.extend(lower.iter().zip(upper).map(|(a, b)| mixed(a, b, t)));
-        GuideRow { nodes, columns: &self.columns }
+    pub(super) fn row<'a>(&'a self, y: usize, mixed: &'a mut MixedRow) -> GuideRow<'a> {
+        let size = self.columns.len();
+        mix_rows(&self.fine, self.side, y, size, &mut mixed.fine);
+        mix_rows(&self.smooth.nodes, self.smooth.side, y, size, &mut mixed.smooth);
+        GuideRow { mixed, columns: &self.columns, smooth_columns: &self.smooth_columns }
     }
 
     /// Nodes in a row.
@@ -171,24 +176,68 @@ impl Guide {
     /// The node of this number, row by row from the top.
     #[inline]
     pub(super) fn node(&self, i: usize) -> Place {
-        Place::of(self.nodes[i])
+        let side = self.smooth.side;
+        let per_node = side as f32 / self.side as f32;
+        let (column, s) = between(i % self.side, per_node, side);
+        let (row, t) = between(i / self.side, per_node, side);
+        let [above, below] = [row, row + 1].map(|row| {
+            let from = row * side + column;
+            mixed(&self.smooth.nodes[from], &self.smooth.nodes[from + 1], s)
+        });
+        place(&self.fine[i], &mixed(&above, &below, t))
     }
+}
+
+/// A place of both lattices.
+#[inline(always)]
+fn place([vein, narrow]: &[f32; 2], smooth: &[f32; 8]) -> Place {
+    let [edge, major, speckle, a, b, c, wide, _] = *smooth;
+    let from_veins = if wide > *narrow { wide } else { *narrow };
+    Place { edge, major, vein: *vein, from_veins, speckle, noise: [a, b, c] }
+}
+
+/// The nodes of a lattice with so many a side mixed for a row of a texture of so many texels.
+#[inline(always)]
+fn mix_rows<const N: usize>(
+    nodes: &[[f32; N]],
+    side: usize,
+    y: usize,
+    size: usize,
+    row: &mut Vec<[f32; N]>,
+) {
+    let (i, t) = between(y, side as f32 / size as f32, side);
+    let (lower, upper) = (&nodes[i * side..(i + 1) * side], &nodes[(i + 1) * side..(i + 2) * side]);
+    row.clear();
+    row.extend(lower.iter().zip(upper).map(|(a, b)| mixed(a, b, t)));
+}
+
+/// Nodes of both lattices at the height of a row of the texture.
+#[derive(Debug, Default)]
+pub(super) struct MixedRow {
+    fine: Vec<[f32; 2]>,
+    smooth: Vec<[f32; 8]>,
 }
 
 /// The guide along one row of the texture.
 #[derive(Debug)]
 pub(super) struct GuideRow<'a> {
-    nodes: &'a [[f32; 8]],
+    mixed: &'a MixedRow,
     columns: &'a [(u32, f32)],
+    smooth_columns: &'a [(u32, f32)],
 }
 
 impl GuideRow<'_> {
     /// The guide at column `x` of the texture.
     #[inline(always)]
     pub(super) fn at(&self, x: usize) -> Place {
-        let (i, t) = self.columns[x];
-        let i = i as usize;
-        Place::of(mixed(&self.nodes[i], &self.nodes[i + 1], t))
+        #[inline(always)]
+        fn at<const N: usize>(nodes: &[[f32; N]], columns: &[(u32, f32)], x: usize) -> [f32; N] {
+            let (i, t) = columns[x];
+            let i = i as usize;
+            mixed(&nodes[i], &nodes[i + 1], t)
+        }
+        let fine = at(&self.mixed.fine, self.columns, x);
+        place(&fine, &at(&self.mixed.smooth, self.smooth_columns, x))
     }
 }
 
@@ -230,7 +279,7 @@ mod tests {
         let spacing = frame.side_mm / side as f64;
         let guide = Guide::new(side, &margin, &bare, &frame, size, &Reach::NONE, 1);
         let edges = SegmentIndex::of_polygon(margin.outline());
-        let mut nodes = Vec::new();
+        let mut nodes = MixedRow::default();
         for y in 0..size {
             let row = guide.row(y, &mut nodes);
             for x in 0..size {

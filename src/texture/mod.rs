@@ -24,6 +24,7 @@ pub mod mip;
 pub mod normals;
 mod occlusion;
 mod optics;
+mod pen;
 pub mod petiole;
 pub mod pigment;
 pub mod plates;
@@ -31,6 +32,7 @@ mod preview;
 pub mod relief;
 mod scene;
 mod side;
+mod spans;
 pub mod spectrum;
 mod strip;
 mod tissue;
@@ -125,22 +127,22 @@ pub fn paint(
     let paint = &paint;
     let scene = Scene::new(paint, margin, venation, seed);
     report(1);
-    let [mut front, mut back] = scene.paint();
+    let ([mut front, mut back], spans) = scene.paint();
     if let Some(wounds) = &scene.wounds {
         let bare = |x: usize, y: usize| wounds.is_bare(x, y);
         crumbs::clear(&mut front, &mut back, &scene.whole(), bare);
     }
     report(2);
-    dilation::spread(&mut front, &mut back);
+    dilation::spread(&mut front, &mut back, &spans);
     let per_mm = scene.frame().pixels_per_mm(scene.size) as f32;
     let per_texel = scene.height_range_mm() as f32 / 65535.0 * per_mm;
-    for side in [&mut front, &mut back] {
+    for (side, spans) in [(&mut front, &spans), (&mut back, &spans.mirrored())] {
         if paint.maps.has(MapKind::Normal) {
             side.normal = Grid::filled(scene.size, scene.size, [0; 3]);
-            normals::fill(side, per_texel);
+            normals::fill(side, spans, per_texel);
         }
         if side.has(MapKind::AmbientOcclusion) {
-            occlusion::fill(side, per_texel, per_mm);
+            occlusion::fill(side, spans, per_texel, per_mm);
         }
     }
     let mut set = TextureSet {

@@ -1,8 +1,11 @@
 //! Normals from heights by central differences, OpenGL convention: +x right, +y up the picture.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::side::{FLAT, SideMaps};
+use super::spans::Spans;
 use crate::raster::Grid;
 
 /// The unit normal of a surface whose height rises by `dx` per unit to the right and by `dy` per
@@ -23,18 +26,21 @@ pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
 
 /// Fills the normals of a side from its heights, where the leaf is; flat elsewhere. One step of a
 /// height is `per_texel` texels high.
-pub(super) fn fill(side: &mut SideMaps, per_texel: f32) {
+pub(super) fn fill(side: &mut SideMaps, spans: &Spans, per_texel: f32) {
     let size = side.size();
     let SideMaps { base_colour, height, normal, .. } = side;
     normal.values_mut().par_chunks_mut(size.max(1)).enumerate().for_each(|(y, normals)| {
         let colours = base_colour.row(y);
-        pulp::Arch::new().dispatch(Row { y, colours, height, per_texel, normals });
+        let columns = spans.row(y);
+        pulp::Arch::new().dispatch(Row { y, columns, colours, height, per_texel, normals });
     });
 }
 
 /// A row of normals to be filled.
 struct Row<'a> {
     y: usize,
+    /// Outside of these there is no leaf.
+    columns: Range<usize>,
     colours: &'a [[u8; 4]],
     height: &'a Grid<u16>,
     per_texel: f32,
@@ -49,14 +55,16 @@ impl pulp::WithSimd for Row<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { y, colours, height, per_texel, normals } = self;
+        let Self { y, columns, colours, height, per_texel, normals } = self;
         let size = normals.len();
         let (row, last) = (height.row(y), height.height() - 1);
         let (above, below) = (height.row(y.saturating_sub(1)), height.row((y + 1).min(last)));
         let across = if y == 0 || y == last { per_texel } else { 0.5 * per_texel };
         let at = |x: usize| encoded_slopes(height, x, y, per_texel);
-        for start in (0..size).step_by(LANES) {
-            let end = (start + LANES).min(size);
+        normals[..columns.start].fill(FLAT);
+        normals[columns.end..].fill(FLAT);
+        for start in columns.clone().step_by(LANES) {
+            let end = (start + LANES).min(columns.end);
             if colours[start..end].iter().all(|texel| texel[3] == 0) {
                 normals[start..end].fill(FLAT);
                 continue;
@@ -143,7 +151,7 @@ mod tests {
             }
         }
         // A thousand steps to the texel, each 1/1000 of a texel high: 45°.
-        fill(&mut side, 1e-3);
+        fill(&mut side, &Spans::whole(size), 1e-3);
         let lean = (127.5 * std::f64::consts::FRAC_1_SQRT_2) as u8;
         let at = |x: usize, y: usize| side.normal[(x, y)];
         let near = |a: u8, b: u8| a.abs_diff(b) <= 1;

@@ -11,6 +11,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::side::SideMaps;
+use super::spans::Spans;
 use crate::raster::Grid;
 use crate::raster::color::{byte, word};
 
@@ -26,32 +27,33 @@ const EMPHASIS: f32 = 1.6;
 
 /// Fills the occlusion of a side from its heights where the leaf is; 255 elsewhere. One step of a
 /// height is `per_texel` texels high, and `per_mm` texels make a millimetre.
-pub(super) fn fill(side: &mut SideMaps, per_texel: f32, per_mm: f32) {
+pub(super) fn fill(side: &mut SideMaps, spans: &Spans, per_texel: f32, per_mm: f32) {
     let size = side.size();
     let steps = REACH_MM.map(|mm| ((mm * per_mm + 0.5) as usize).clamp(1, size.max(2) - 1));
     let SideMaps { base_colour, height, occlusion, deep, .. } = side;
-    fill_plane(occlusion, (base_colour, height), steps, per_texel, byte);
+    fill_plane(occlusion, (base_colour, height, spans), steps, per_texel, byte);
     if let Some(deep) = deep {
-        fill_plane(&mut deep.occlusion, (base_colour, height), steps, per_texel, word);
+        fill_plane(&mut deep.occlusion, (base_colour, height, spans), steps, per_texel, word);
     }
 }
 
 /// Fills a plane whose values `of` shares are, where the leaf is.
 fn fill_plane<T: Copy + Send>(
     occlusion: &mut Grid<T>,
-    (base_colour, height): (&Grid<[u8; 4]>, &Grid<u16>),
+    (base_colour, height, spans): (&Grid<[u8; 4]>, &Grid<u16>, &Spans),
     steps: [usize; 2],
     per_texel: f32,
     of: fn(f32) -> T,
 ) {
     let size = height.width();
     let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [T])| {
-        let colours = base_colour.row(y);
-        let Some(first) = colours.iter().position(covered) else { return };
-        let end = colours.iter().rposition(covered).expect("there is a first") + 1;
-        let work = Row { y, columns: first..end, height, steps, per_texel, sum };
+        let (colours, columns) = (base_colour.row(y), spans.row(y));
+        if columns.is_empty() {
+            return;
+        }
+        let work = Row { y, columns: columns.clone(), height, steps, per_texel, sum };
         pulp::Arch::new().dispatch(work);
-        for x in first..end {
+        for x in columns {
             if covered(&colours[x]) {
                 row[x] = of(1.0 - sum[x] / DIRECTIONS.len() as f32);
             }
@@ -160,7 +162,7 @@ mod tests {
             side.height[(10, y)] = 30_000;
             side.height[(22, y)] = 35_000;
         }
-        fill(&mut side, 1e-3, 10.0);
+        fill(&mut side, &Spans::whole(size), 1e-3, 10.0);
         let at = |x: usize| side.occlusion[(x, 16)];
         assert!(at(10) < 200 && at(22) == 255 && at(16) == 255, "{} {}", at(10), at(22));
         assert!(at(21) < 255);
@@ -175,7 +177,7 @@ mod tests {
                 side.height[(x, y)] = 65_535;
             }
         }
-        fill(&mut side, 1.0, 10.0);
+        fill(&mut side, &Spans::whole(16), 1.0, 10.0);
         // Three of eight directions end at the wall; none of them can see past it.
         let expected = (255.5 - 255.0 * 3.0 / 8.0) as u8;
         assert!(side.occlusion[(7, 8)].abs_diff(expected) <= 1, "{}", side.occlusion[(7, 8)]);

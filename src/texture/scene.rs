@@ -19,6 +19,7 @@ use super::petiole::Stalk;
 use super::pigment::{Course, Pigments};
 use super::relief::Relief;
 use super::side::SideMaps;
+use super::spans::Spans;
 use super::tissue;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -182,8 +183,9 @@ impl Scene {
         f64::from(self.relief.thickest())
     }
 
-    /// Both sides, empty where the leaf is not, heights without their normals; the back mirrored.
-    pub(super) fn paint(&self) -> [SideMaps; 2] {
+    /// Both sides, empty where the leaf is not, heights without their normals, the back mirrored; and
+    /// where in the front it is.
+    pub(super) fn paint(&self) -> ([SideMaps; 2], Spans) {
         let size = self.size;
         // Normals are made from the heights at the end.
         let maps = self.maps.without(MapKind::Normal);
@@ -191,11 +193,13 @@ impl Scene {
         let [front, back] = &mut sides;
         let bands: Vec<_> =
             bands(front, self.band * size).zip(bands(back, self.band * size)).collect();
-        bands.into_par_iter().enumerate().for_each_init(Scratch::default, |scratch, (i, sides)| {
+        let paint = |scratch: &mut Scratch, (i, sides): (usize, _)| {
             let rows = i * self.band..((i + 1) * self.band).min(size);
-            pulp::Arch::new().dispatch(Band { scene: self, number: i, rows, sides, scratch });
-        });
-        sides
+            pulp::Arch::new().dispatch(Band { scene: self, number: i, rows, sides, scratch })
+        };
+        let spans: Vec<Vec<Range<usize>>> =
+            bands.into_par_iter().enumerate().map_init(Scratch::default, paint).collect();
+        (sides, Spans::of(spans.concat()))
     }
 
     /// How far the leaf covered the texels before there were wounds (255 for all).

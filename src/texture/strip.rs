@@ -158,7 +158,7 @@ impl Strip {
 
     #[inline(always)]
     pub(super) fn read_veins(&mut self, rows: &VeinRows, line: usize) {
-        let from = line * rows.width + self.start;
+        let from = line * rows.stride + self.start;
         let (len, vein) = (self.len, &mut self.vein);
         for (lane, plane) in [
             (&mut vein.cover, &rows.cover),
@@ -168,7 +168,9 @@ impl Strip {
         ] {
             lane[..len].copy_from_slice(&plane[from..from + len]);
         }
-        vein.order[..len].copy_from_slice(&rows.order[from..from + len]);
+        if !rows.order.is_empty() {
+            vein.order[..len].copy_from_slice(&rows.order[from..from + len]);
+        }
     }
 
     /// The blade's cover of these texels, and the petiole's where it is in the rows.

@@ -1,12 +1,14 @@
 //! Distances and weights on the nodes of the guide.
 
+use std::ops::Range;
+
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-use crate::raster::Grid;
 use crate::raster::coverage::Capsule;
-use crate::raster::distance::{NO_SITE, nearest_sites};
+use crate::raster::distance::{Envelope, NearestByRows};
 use crate::texture::fields::BRANCH_FLARE;
+use crate::texture::pen::{Axis, BLOCK, Pen, block};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
@@ -35,7 +37,8 @@ pub(in crate::texture) struct Lattice<'a> {
 impl Lattice<'_> {
     /// Distance from every node to the nearest vein up to an order (mm).
     pub(in crate::texture) fn vein_distances(&self, venation: &Venation, order: u8) -> Vec<f32> {
-        self.distances(&vein_lines(venation, |of| of <= order), |_| true)
+        let all = vec![0..self.side; self.side];
+        self.distances(&vein_lines(venation, |of| of <= order), &all)
     }
 
     /// The node nearest to a point of the frame (mm).
@@ -63,22 +66,25 @@ impl Lattice<'_> {
         self.frame.side_mm / self.side as f64
     }
 
-    /// Distance from every node that is `wanted` to the nearest of some lines (mm); others are far.
-    pub(super) fn distances(
-        &self,
-        lines: &[Line],
-        wanted: impl Fn(usize) -> bool + Sync,
-    ) -> Vec<f32> {
+    /// Distance from the nodes in some columns of every row to the nearest of some lines (mm); others are
+    /// far.
+    pub(super) fn distances(&self, lines: &[Line], columns: &[Range<usize>]) -> Vec<f32> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![FAR_MM; side * side];
-        distances.par_chunks_mut(side).enumerate().for_each(|(y, row)| {
-            for (x, distance) in row.iter_mut().enumerate() {
-                if wanted(y * side + x) && near.sites[(x, y)] != NO_SITE {
-                    *distance = near.distance(x, y) * spacing;
-                }
+        let fill = |envelope: &mut Envelope, ((y, row), wanted): Row<'_>| {
+            if wanted.is_empty() {
+                return;
             }
-        });
+            near.sites.runs(y, envelope, |run, site| {
+                let line = near.line_at[site as usize] as usize;
+                for x in run.start.max(wanted.start)..run.end.min(wanted.end) {
+                    row[x] = near.distance(line, x, y) * spacing;
+                }
+            });
+        };
+        let rows = distances.par_chunks_mut(side).enumerate().zip(columns);
+        rows.for_each_init(Envelope::default, fill);
         distances
     }
 
@@ -93,7 +99,7 @@ impl Lattice<'_> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![-FAR_MM; side * side];
-        distances.par_chunks_mut(side).enumerate().for_each(|(y, row)| {
+        let fill = |envelope: &mut Envelope, (y, row): (usize, &mut [f32])| {
             let height = self.leaf(0, y).y;
             let mut crossings: Vec<f64> = outline
                 .iter()
@@ -102,97 +108,130 @@ impl Lattice<'_> {
                 .collect();
             crossings.sort_by(f64::total_cmp);
             let mut passed = 0;
-            for (x, distance) in row.iter_mut().enumerate() {
-                let at = self.leaf(x, y).x;
-                while passed < crossings.len() && crossings[passed] <= at {
-                    passed += 1;
-                }
-                let site = near.sites[(x, y)];
-                if site == NO_SITE {
-                    continue;
-                }
-                if passed % 2 == 1 {
-                    *distance = near.distance(x, y) * spacing;
-                    continue;
-                }
+            near.sites.runs(y, envelope, |run, site| {
+                let line = near.line_at[site as usize] as usize;
                 let (sx, sy) = (site as usize % side, site as usize / side);
-                let cells = Vec2::new(x.abs_diff(sx) as f32, y.abs_diff(sy) as f32).length();
-                // A cell's line may pass a cell nearer than its centre.
-                let far = (cells - 1.5) * spacing > exact;
-                *distance = -spacing * if far { cells } else { near.distance(x, y) };
-            }
-        });
+                for x in run {
+                    let at = self.leaf(x, y).x;
+                    while passed < crossings.len() && crossings[passed] <= at {
+                        passed += 1;
+                    }
+                    row[x] = if passed % 2 == 1 {
+                        near.distance(line, x, y) * spacing
+                    } else {
+                        let cells =
+                            Vec2::new(x.abs_diff(sx) as f32, y.abs_diff(sy) as f32).length();
+                        // A cell's line may pass a cell nearer than its centre.
+                        let far = (cells - 1.5) * spacing > exact;
+                        -spacing * if far { cells } else { near.distance(line, x, y) }
+                    };
+                }
+            });
+        };
+        distances.par_chunks_mut(side).enumerate().for_each_init(Envelope::default, fill);
         distances
     }
 
-    /// The largest w = 1 − distance / (spread × width) over all veins.
-    pub(super) fn vein_weights(&self, venation: &Venation, spread: f64) -> Vec<f32> {
-        let mut weights = vec![0.0_f32; self.side * self.side];
-        if spread <= 0.0 {
-            return weights;
+    /// The largest w = 1 − distance / (spread × width) over the veins whose colour reaches so far (nodes).
+    pub(super) fn vein_weights(
+        &self,
+        venation: &Venation,
+        spread: f64,
+        far: Range<f32>,
+    ) -> Vec<f32> {
+        if spread <= 0.0 || far.is_empty() {
+            return vec![0.0; self.side * self.side];
         }
         let per_mm = self.frame.pixels_per_mm(self.side);
-        for (a, b) in coarse_edges(venation, spread) {
-            let position = |node: u32| {
-                let p = venation.graph().positions()[node as usize];
-                self.frame.pixel_from_leaf(p, self.side).as_vec2()
-            };
-            let reach = |node: u32| 2.0 * spread * venation.radii()[node as usize] * per_mm;
-            let capsule = Capsule {
-                a: position(a),
-                b: position(b),
-                radius_a: reach(a).min(reach(b) * BRANCH_FLARE) as f32,
-                radius_b: reach(b) as f32,
-            };
-            self.add_cone(&mut weights, &capsule);
-        }
-        weights
+        let position = |node: u32| {
+            let p = venation.graph().positions()[node as usize];
+            self.frame.pixel_from_leaf(p, self.side).as_vec2()
+        };
+        let reach = |node: u32| 2.0 * spread * venation.radii()[node as usize] * per_mm;
+        let cone = |(a, b): (u32, u32)| Capsule {
+            a: position(a),
+            b: position(b),
+            radius_a: reach(a).min(reach(b) * BRANCH_FLARE) as f32,
+            radius_b: reach(b) as f32,
+        };
+        let cones = coarse_edges(venation, spread).into_iter().map(cone);
+        self.weights(cones.filter(|cone| far.contains(&cone.widest())).collect())
     }
 
     /// The largest w = 1 − distance / reach over all speckles.
     pub(super) fn speckle_weights(&self, speckles: &[DVec2], reach_mm: f64) -> Vec<f32> {
-        let mut weights = vec![0.0_f32; self.side * self.side];
         let reach = (reach_mm * self.frame.pixels_per_mm(self.side)) as f32;
         if reach <= 0.0 {
-            return weights;
+            return vec![0.0; self.side * self.side];
         }
-        for &speckle in speckles {
+        let cone = |&speckle: &DVec2| {
             let a = self.frame.pixel_from_leaf(speckle, self.side).as_vec2();
-            self.add_cone(&mut weights, &Capsule { a, b: a, radius_a: reach, radius_b: reach });
-        }
-        weights
+            Capsule { a, b: a, radius_a: reach, radius_b: reach }
+        };
+        self.weights(speckles.iter().map(cone).collect())
     }
 
-    fn add_cone(&self, weights: &mut [f32], capsule: &Capsule) {
-        let [columns, rows] = capsule.pixels(capsule.widest(), self.side, 0..self.side);
-        let Capsule { a, b, radius_a, radius_b } = *capsule;
-        let along = b - a;
-        let length2 = along.length_squared();
-        let per_length2 = if length2 > 0.0 { 1.0 / length2 } else { 0.0 };
-        let first = columns.start as i32;
-        for y in rows {
-            let row = &mut weights[y * self.side..][columns.clone()];
-            let dy = y as f32 + 0.5 - a.y;
-            // Without a branch, so that several nodes can be weighed at once.
-            for (i, weight) in row.iter_mut().enumerate() {
-                let dx = (first + i as i32) as f32 + 0.5 - a.x;
-                let t = ((dx * along.x + dy * along.y) * per_length2).clamp(0.0, 1.0);
-                let (ex, ey) = (dx - along.x * t, dy - along.y * t);
-                let reach = (radius_a + (radius_b - radius_a) * t).max(1e-6);
-                let own = 1.0 - (ex * ex + ey * ey).sqrt() / reach;
-                *weight = if own > *weight { own } else { *weight };
-            }
-        }
+    fn weights(&self, cones: Vec<Capsule>) -> Vec<f32> {
+        pulp::Arch::new().dispatch(Cones { side: self.side, cones })
     }
 }
 
+/// Cones over the nodes, 1 on the axis of a capsule and 0 at its radius; the highest counts.
+struct Cones {
+    side: usize,
+    cones: Vec<Capsule>,
+}
+
+impl pulp::WithSimd for Cones {
+    type Output = Vec<f32>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<f32> {
+        let side = self.side;
+        let mut weights = vec![0.0_f32; side * side + BLOCK];
+        for cone in &self.cones {
+            let [columns, rows] = cone.pixels(cone.widest(), side, 0..side);
+            let pen = Pen::new(cone, cone.widest());
+            for y in rows {
+                let on_row = pen.on_row(y);
+                let columns = pen.chord(y, columns.clone());
+                for x in columns.clone().step_by(BLOCK) {
+                    let Axis { distance2, radius } = on_row.axis(x);
+                    let nodes = &mut weights[y * side + x..][..BLOCK];
+                    let mut highest = block(nodes);
+                    for i in 0..BLOCK {
+                        let own = 1.0 - distance2[i].sqrt() / radius[i].max(1e-6);
+                        // A block may run over into the next row, where it has no business.
+                        let higher = (own > highest[i]) & (x + i < side);
+                        highest[i] = if higher { own } else { highest[i] };
+                    }
+                    nodes.copy_from_slice(&highest);
+                }
+            }
+        }
+        weights.truncate(side * side);
+        weights
+    }
+}
+
+/// A row of distances with its number, and the columns of it that are asked for.
+type Row<'a> = ((usize, &'a mut [f32]), &'a Range<usize>);
+
 /// Which of some lines is near each node; lengths are in nodes.
 struct Near {
-    lines: Vec<[Vec2; 2]>,
+    lines: Vec<Stretch>,
     /// A line that passes the cell of a node.
     line_at: Vec<u32>,
-    /// The cell nearest to a node that a line passes.
-    sites: Grid<u32>,
+    /// The cells nearest to the nodes that a line passes.
+    sites: NearestByRows,
+}
+
+/// A line, ready to be measured from.
+struct Stretch {
+    from: Vec2,
+    along: Vec2,
+    /// From one end to the other the place along it goes from 0 to 1.
+    per_along: Vec2,
 }
 
 impl Near {
@@ -200,36 +239,51 @@ impl Near {
         const NO_LINE: u32 = u32::MAX;
         let side = lattice.side;
         let node = |p: DVec2| lattice.frame.pixel_from_leaf(p, side).as_vec2();
-        let lines: Vec<[Vec2; 2]> = lines.iter().map(|&(a, b)| [node(a), node(b)]).collect();
+        let mut stretches = Vec::with_capacity(lines.len());
         // Note in each cell a line that passes it; where several do, they are near each other.
         let mut line_at = vec![NO_LINE; side * side];
-        for (i, &[a, b]) in lines.iter().enumerate() {
-            let steps = (a.distance(b) * 2.0) as usize + 1;
+        for (i, &(a, b)) in (0..).zip(lines) {
+            let (a, b) = (node(a), node(b));
+            let (along, length2) = (b - a, a.distance_squared(b));
+            let per_along = if length2 > 0.0 { along / length2 } else { Vec2::ZERO };
+            stretches.push(Stretch { from: a, along, per_along });
+            let steps = length2.sqrt() as usize + 1;
             for step in 0..=steps {
                 let cell = a.lerp(b, step as f32 / steps as f32);
                 let clamp = |v: f32| (v.max(0.0) as usize).min(side - 1);
                 let slot = &mut line_at[clamp(cell.y) * side + clamp(cell.x)];
                 if *slot == NO_LINE {
-                    *slot = i as u32;
+                    *slot = i;
                 }
             }
         }
-        let sites = nearest_sites(side, side, |i| line_at[i] != NO_LINE);
-        Self { lines, line_at, sites }
+        let sites = NearestByRows::new(side, side, |i| line_at[i] != NO_LINE);
+        Self { lines: stretches, line_at, sites }
     }
 
-    /// From a node to the nearest line, where there is one.
-    fn distance(&self, x: usize, y: usize) -> f32 {
+    /// From a node to a line, or one of its neighbours in the list, which continue it.
+    #[inline]
+    fn distance(&self, line: usize, x: usize, y: usize) -> f32 {
         let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-        let i = self.line_at[self.sites[(x, y)] as usize] as usize;
-        // The neighbours in the list continue the line: the nearest may be one of them.
-        let near = self.lines[i.saturating_sub(1)..(i + 2).min(self.lines.len())].iter();
+        let near = self.lines[line.saturating_sub(1)..(line + 2).min(self.lines.len())].iter();
         let least = near
-            .map(|&[a, b]| Capsule { a, b, radius_a: 0.0, radius_b: 0.0 }.nearest(p).0)
-            .fold(f32::INFINITY, f32::min);
+            .map(|line| line.distance2(p))
+            .fold(f32::INFINITY, |a, b| if b < a { b } else { a });
         least.sqrt()
     }
 }
+
+impl Stretch {
+    #[inline]
+    fn distance2(&self, p: Vec2) -> f32 {
+        let to = p - self.from;
+        let t = to.dot(self.per_along).clamp(0.0, 1.0);
+        (to - self.along * t).length_squared()
+    }
+}
+
+/// An edge is short at this share of the reach: from its chord a vein strays by a hundredth of that.
+const SHORT: f64 = 0.3;
 
 /// The vein edges with short ones in a row replaced by one, as long as it is short against the
 /// reach of the colour: a midrib of 300 nodes would otherwise paint 300 overlapping discs.
@@ -243,7 +297,7 @@ fn coarse_edges(venation: &Venation, spread: f64) -> Vec<(u32, u32)> {
         let from = start[parent as usize];
         let length = graph.positions()[from as usize].distance(graph.positions()[child as usize]);
         let reach = 2.0 * spread * venation.radii()[child as usize];
-        if length < 0.12 * reach && children[child as usize] > 0 {
+        if length < SHORT * reach && children[child as usize] > 0 {
             start[child as usize] = from;
         } else {
             edges.push((from, child));

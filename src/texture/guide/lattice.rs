@@ -78,8 +78,10 @@ impl Lattice<'_> {
             }
             near.sites.runs(y, envelope, |run, site| {
                 let line = near.line_at[site as usize] as usize;
-                for x in run.start.max(wanted.start)..run.end.min(wanted.end) {
-                    row[x] = near.distance(line, x, y) * spacing;
+                let columns = run.start.max(wanted.start)..run.end.min(wanted.end);
+                let Some(distances) = row.get_mut(columns.clone()) else { return };
+                for (x, distance) in columns.zip(distances) {
+                    *distance = near.distance(line, x, y) * spacing;
                 }
             });
         };

@@ -43,6 +43,12 @@ pub(super) fn aside(
     line
 }
 
+/// Whether a point lies on the left of a line.
+pub(super) fn is_left(p: DVec2, line: &[DVec2]) -> bool {
+    let (foot, ahead) = nearest(line, p);
+    ahead.perp_dot(p - foot) > 0.0
+}
+
 /// The foot of a point on a line, and the direction of the line there.
 fn nearest(line: &[DVec2], p: DVec2) -> (DVec2, DVec2) {
     let feet = line.windows(2).map(|w| (polygon::nearest_on_segment(w[0], w[1], p), w[1] - w[0]));

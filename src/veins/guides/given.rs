@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::aside::aside;
+use super::aside::{self, aside};
 use super::curve;
 use super::planter::{Planter, Vein};
 use super::primary::into_lobe;
@@ -33,9 +33,6 @@ parameters! {
         tertiary: lines(),
     }
 }
-
-/// A line that begins so much (in steps) beyond the end of what was laid of another began on nothing.
-const LOST: f64 = 6.0;
 
 /// The rest of a line that a vein in its way may cut off without being another end than was meant.
 const REST: f64 = 0.15;
@@ -106,7 +103,7 @@ pub(super) fn lay(given: &GivenSpec, planter: &mut Planter<'_>) {
             let vein = if laid.is_empty() {
                 midrib(planter, &line)
             } else {
-                laid.start(planter, line[0]).and_then(|start| branch(planter, &line, rank, &start))
+                laid.start(line[0]).and_then(|start| branch(planter, &line, rank, &start))
             };
             if let Some((vein, course)) = vein {
                 join(planter, &vein, &line, rank);
@@ -139,10 +136,19 @@ fn branch(
 ) -> Option<(Vein, Vec<DVec2>)> {
     let (node, from) = (start.node, planter.graph.positions()[start.node as usize]);
     let mut course = begun_at(line, from);
-    if matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary) {
-        let left = start.is_left(&course);
+    let is_main = matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary);
+    let left = is_main && start.is_left(line);
+    let on_its_side = |course: Vec<DVec2>| {
+        aside(course, start.parent, start.share, left, planter.ground.length())
+    };
+    if is_main {
+        if from.distance(line[0]) > planter.step {
+            // The other had to be laid elsewhere.
+            course = on_its_side(course);
+        }
         if planter.way(&course, rank) < WHOLE {
             let inside = planter.ground.inside(&curve::resampled(&course, planter.step));
+            let inside = on_its_side(inside);
             if planter.way(&inside, rank) > planter.way(&course, rank) {
                 course = inside;
             }
@@ -150,16 +156,37 @@ fn branch(
         if planter.way(&course, rank) < WHOLE - REST {
             let end = line[line.len() - 1];
             let side = if end.x < from.x { -1.0 } else { 1.0 };
-            let round = into_lobe(planter, from, side, end);
-            let round = aside(round, start.parent, start.share, left, planter.ground.length());
+            let round = on_its_side(into_lobe(planter, from, side, end));
             if planter.way(&round, rank) > planter.way(&course, rank) {
                 course = round;
             }
         }
     }
-    let vein = planter.lay(node, &course, rank, 0.0)?;
-    Some((vein, course))
+    if let Some(vein) = planter.lay(node, &course, rank, 0.0) {
+        return Some((vein, course));
+    }
+    if !is_main {
+        return None;
+    }
+    // Where veins crowd, out of a node beside or at another angle: a vein does not go and come again.
+    let tries =
+        ASIDE_DEG.iter().flat_map(|degrees| start.beside.iter().map(move |at| (degrees, at)));
+    tries.into_iter().find_map(|(&degrees, &node)| {
+        let from = planter.graph.positions()[node as usize];
+        let turn = DVec2::from_angle(degrees.to_radians());
+        let turned: Vec<DVec2> =
+            begun_at(&course, from).iter().map(|p| from + turn.rotate(*p - from)).collect();
+        let turned = aside(turned, start.parent, start.share, left, planter.ground.length());
+        let vein = planter.lay(node, &turned, rank, 0.0)?;
+        Some((vein, turned))
+    })
 }
+
+/// How far a vein without room is turned.
+const ASIDE_DEG: [f64; 7] = [0.0, 15.0, -15.0, 30.0, -30.0, 50.0, -50.0];
+
+/// It leaves at most so many nodes off its place.
+const BESIDE: usize = 3;
 
 /// The line moved so that it begins at `from`, less and less until its end stays: it keeps its direction.
 fn begun_at(line: &[DVec2], from: DVec2) -> Vec<DVec2> {
@@ -198,17 +225,22 @@ struct LaidLine {
 /// Where a line leaves another.
 struct Start<'a> {
     node: NodeId,
+    given: &'a [DVec2],
+    /// The nodes about that, the nearest first.
+    beside: Vec<NodeId>,
     parent: &'a [DVec2],
     share: f64,
 }
 
 impl Start<'_> {
-    /// Whether a line leaves on the left.
+    /// Whether a line as it was given leaves the other as that was given on the left.
     fn is_left(&self, line: &[DVec2]) -> bool {
-        let (at, ahead) = curve::at(self.parent, self.share);
-        ahead.perp_dot(curve::at(line, 0.25).0 - at) > 0.0
+        aside::is_left(curve::at(line, BY_NOW).0, self.given)
     }
 }
+
+/// On which side of the other a line leaves shows at this share of it.
+const BY_NOW: f64 = 0.15;
 
 impl LaidLines {
     fn is_empty(&self) -> bool {
@@ -220,8 +252,8 @@ impl LaidLines {
         self.lines.push(LaidLine { given, bounds, vein, course });
     }
 
-    /// Where a line leaves that begins at `p`; `None` where nothing was laid.
-    fn start(&self, planter: &Planter<'_>, p: DVec2) -> Option<Start<'_>> {
+    /// Where a line that begins at `p` leaves; `None` where nothing was laid.
+    fn start(&self, p: DVec2) -> Option<Start<'_>> {
         let mut best: Option<(f64, &LaidLine)> = None;
         for line in &self.lines {
             let most = best.map_or(f64::INFINITY, |(d2, _)| d2);
@@ -240,10 +272,12 @@ impl LaidLines {
         // Nodes stand at equal steps.
         let (whole, last) = (curve::length(&line.course), line.vein.nodes.len() - 1);
         let at = share * whole * last as f64 / line.vein.length();
-        if at > last as f64 + LOST * planter.step * last as f64 / line.vein.length() {
-            return None;
-        }
-        let node = line.vein.nodes[(at.round() as usize).min(last)];
-        Some(Start { node, parent: &line.course, share })
+        // What began beyond where the other got to begins at its end.
+        let at = (at.round() as usize).min(last);
+        let beside = (0..=BESIDE).flat_map(|k| [at.checked_sub(k), (k > 0).then_some(at + k)]);
+        let nodes = &line.vein.nodes;
+        let beside = beside.flatten().filter_map(|i| nodes.get(i).copied()).collect();
+        let given = &line.given;
+        Some(Start { node: nodes[at], given, beside, parent: &line.course, share })
     }
 }

@@ -63,10 +63,10 @@ struct Relaxation {
     room: Room,
     /// Nodes that stay.
     pinned: Vec<bool>,
-    /// The junctions that move, in the order in which they do.
+    /// The junctions that move, in order of place: what one looks at is at hand for the next.
     free: Vec<NodeId>,
     step: f64,
-    faces: Option<(Chains, Faces)>,
+    faces: Option<Faces>,
     /// How strongly faces press, in pulls of the mean vein.
     pressure: f64,
     star: Star,
@@ -103,12 +103,9 @@ impl Relaxation {
             pinned[net.number(node) as usize] = is_pinned(node);
         }
         let junctions = chains.junctions().map(|node| net.number(node));
-        let free = junctions.filter(|&node| !pinned[node as usize]).collect();
-        let faces = (pressure > 0.0).then(|| {
-            let chains = net.renumbered(chains);
-            let faces = Faces::of(&chains, &net.positions);
-            (chains, faces)
-        });
+        let mut free: Vec<NodeId> = junctions.filter(|&node| !pinned[node as usize]).collect();
+        free.sort_unstable();
+        let faces = (pressure > 0.0).then(|| Faces::of(&net));
         let room = Room::new(margin, step);
         Self { net, room, pinned, free, step, faces, pressure, star: Star::default() }
     }
@@ -116,8 +113,8 @@ impl Relaxation {
     fn run(mut self, sweeps: u64, mut swept: impl FnMut()) -> Vec<DVec2> {
         let free = std::mem::take(&mut self.free);
         for _ in 0..sweeps {
-            if let Some((chains, faces)) = &mut self.faces {
-                faces.measure(chains, &self.net.positions);
+            if let Some(faces) = &mut self.faces {
+                faces.measure(&self.net);
             }
             self.room.begin_sweep(&self.net);
             for &junction in &free {
@@ -153,8 +150,8 @@ impl Relaxation {
             pulls += pull;
             star.ways.push(towards);
         }
-        if let Some((chains, faces)) = faces {
-            force += faces.push(chains, junction, &net.positions) * self.pressure;
+        if let Some(faces) = faces {
+            force += faces.push(net, junction) * self.pressure;
         }
         // Towards the end of a vein it goes a share of its length at most.
         let nearest = star

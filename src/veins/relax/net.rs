@@ -80,18 +80,6 @@ impl Net {
         self.numbers[node as usize]
     }
 
-    /// The same chains, by the numbers of the nodes here.
-    pub(super) fn renumbered(&self, mut chains: Chains) -> Chains {
-        for node in chains.chains.iter_mut().flat_map(|chain| &mut chain.nodes) {
-            *node = self.number(*node);
-        }
-        let mut at = vec![Vec::new(); chains.at.len()];
-        for (node, here) in (0..).zip(&mut chains.at) {
-            at[self.number(node) as usize] = std::mem::take(here);
-        }
-        Chains { chains: chains.chains, at }
-    }
-
     /// By the nodes of the graph, where they are.
     pub(super) fn places(&self) -> Vec<DVec2> {
         self.numbers.iter().map(|&number| self.positions[number as usize]).collect()
@@ -111,6 +99,11 @@ impl Net {
     pub(super) fn chain(&self, chain: u32) -> &[NodeId] {
         let at = chain as usize;
         &self.nodes[self.firsts[at] as usize..self.firsts[at + 1] as usize]
+    }
+
+    /// How many chains there are.
+    pub(super) fn chain_count(&self) -> usize {
+        self.pulls.len()
     }
 
     pub(super) fn pull(&self, chain: u32) -> f64 {

@@ -68,19 +68,18 @@ fn pane(hub: DVec2) -> VeinGraph {
 
 #[test]
 fn small_faces_press_and_large_ones_give_way() {
-    let hub = DVec2::new(2.5, 30.0);
-    let graph = pane(hub);
-    let chains = Chains::of(&graph);
-    let mut faces = Faces::of(&chains, graph.positions());
-    faces.measure(&chains, graph.positions());
-    let push = faces.push(&chains, 4, graph.positions());
-    assert!(push.x < 0.0 && push.y.abs() < 1e-12, "{push}");
+    let push = |hub: DVec2| {
+        let graph = pane(hub);
+        let chains = Chains::of(&graph);
+        let net = Net::new(&graph, &chains, &vec![1.0; chains.chains.len()]);
+        let mut faces = Faces::of(&net);
+        faces.measure(&net);
+        faces.push(&net, net.number(4))
+    };
+    let off = push(DVec2::new(2.5, 30.0));
+    assert!(off.x < 0.0 && off.y.abs() < 1e-12, "{off}");
     // In the middle all are alike.
-    let even = pane(DVec2::new(0.0, 30.0));
-    let chains = Chains::of(&even);
-    let mut faces = Faces::of(&chains, even.positions());
-    faces.measure(&chains, even.positions());
-    assert!(faces.push(&chains, 4, even.positions()).length() < 1e-12);
+    assert!(push(DVec2::new(0.0, 30.0)).length() < 1e-12);
 }
 
 #[test]

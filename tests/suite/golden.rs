@@ -286,6 +286,20 @@ fn golden_guided_veins() {
 }
 
 #[test]
+fn golden_net_with_every_areole() {
+    let settings = ["margin.length_mm=30", "veins.scale=0.43", "output.maps=veinmask"];
+    let leaf = leaf(&document("beech", &settings), 3, 2048);
+    let mask = &leaf.textures.front.vein_mask;
+    let grey = |&v: &u8| [v, v, v, 255];
+    let (side, half) = (mask.width(), 320);
+    let (x, y) = (side / 2 - half, side / 3 - half);
+    let row = |y: usize| mask.row(y)[x..x + 2 * half].iter().map(grey);
+    let close = Grid::from_values(2 * half, 2 * half, (y..y + 2 * half).flat_map(row).collect());
+    let panels = [panel(mask.map(grey), "veins of a small beech leaf"), panel(close, "closer")];
+    compare("readme_net", &sheet("", &panels, 2, 640));
+}
+
+#[test]
 fn golden_particles_by_scatter_pattern() {
     // Rodkaew 2002, figure 9.
     let folder = crate::support::fresh();

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::polygon;
+use super::curve;
 
 /// A vein gets away from its parent at no smaller angle than this (its sine: 20°),
 const RISE: f64 = 0.34;
@@ -23,7 +23,7 @@ pub(super) fn aside(
     left: bool,
     length: f64,
 ) -> Vec<DVec2> {
-    if from > TIP || parent.len() < 2 {
+    if from > TIP {
         return line;
     }
     let hand = if left { 1.0 } else { -1.0 };
@@ -31,7 +31,7 @@ pub(super) fn aside(
     for p in line.iter_mut().skip(1) {
         way += p.distance(last);
         last = *p;
-        let (foot, ahead) = nearest(parent, *p);
+        let Some((foot, ahead)) = curve::nearest(parent, *p) else { continue };
         let out = ahead.perp() * hand;
         let side = if out.dot(*p - foot) < 0.0 { -1.0 } else { 1.0 };
         let off = side * p.distance(foot);
@@ -45,15 +45,7 @@ pub(super) fn aside(
 
 /// Whether a point lies on the left of a line.
 pub(super) fn is_left(p: DVec2, line: &[DVec2]) -> bool {
-    let (foot, ahead) = nearest(line, p);
-    ahead.perp_dot(p - foot) > 0.0
-}
-
-/// The foot of a point on a line, and the direction of the line there.
-fn nearest(line: &[DVec2], p: DVec2) -> (DVec2, DVec2) {
-    let feet = line.windows(2).map(|w| (polygon::nearest_on_segment(w[0], w[1], p), w[1] - w[0]));
-    let nearest = feet.min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)));
-    nearest.map_or((p, DVec2::Y), |(foot, ahead)| (foot, ahead.normalize_or(DVec2::Y)))
+    curve::nearest(line, p).is_some_and(|(foot, ahead)| ahead.perp_dot(p - foot) > 0.0)
 }
 
 #[cfg(test)]

@@ -50,6 +50,13 @@ pub(super) fn at(line: &[DVec2], share: f64) -> (DVec2, DVec2) {
     last
 }
 
+/// The point of a line nearest to `p`, and the direction there; `None` of a line without pieces.
+pub(super) fn nearest(line: &[DVec2], p: DVec2) -> Option<(DVec2, DVec2)> {
+    let feet = line.windows(2).map(|w| (polygon::nearest_on_segment(w[0], w[1], p), w[1] - w[0]));
+    let nearest = feet.min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)));
+    nearest.map(|(foot, way)| (foot, way.normalize_or(DVec2::Y)))
+}
+
 /// The share of a line at its point nearest to `p`.
 pub(super) fn share_at(line: &[DVec2], p: DVec2) -> f64 {
     let (mut walked, mut best) = (0.0, (f64::INFINITY, 0.0));

@@ -7,7 +7,7 @@ use super::curve;
 use super::planter::{Planter, Vein};
 use super::primary::into_lobe;
 use super::{EXTERIOR, INTERSECONDARY, PRIMARY, SECONDARY, TERTIARY};
-use crate::geometry::{Rect, polygon};
+use crate::geometry::Rect;
 use crate::parameter::parameters;
 use crate::veins::VeinError;
 use crate::veins::graph::{NodeId, Rank, VeinKind};
@@ -259,9 +259,8 @@ impl LaidLines {
             let most = best.map_or(f64::INFINITY, |(d2, _)| d2);
             let outside = p.clamp(line.bounds.min, line.bounds.max).distance_squared(p);
             if outside < most {
-                let feet = line.given.windows(2);
-                let feet = feet.map(|w| polygon::nearest_on_segment(w[0], w[1], p));
-                let d2 = feet.map(|foot| foot.distance_squared(p)).fold(f64::INFINITY, f64::min);
+                let Some((foot, _)) = curve::nearest(&line.given, p) else { continue };
+                let d2 = foot.distance_squared(p);
                 if d2 < most {
                     best = Some((d2, line));
                 }

@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use super::super::curve;
 use super::super::planter::Planter;
-use crate::geometry::polygon;
 use crate::veins::graph::{NodeId, Rank, VeinKind};
 
 /// A vein that was laid, in lengths of the blade.
@@ -93,10 +92,8 @@ const STRAIGHT: f64 = 0.3;
 
 /// A line without the stretch on which it clings to its parent: on another blade it would run across that.
 fn off(line: &[DVec2], parent: &[DVec2], free: f64) -> Vec<DVec2> {
-    let near = |p: &DVec2| {
-        let feet = parent.windows(2).map(|w| polygon::nearest_on_segment(w[0], w[1], *p));
-        feet.map(|foot| foot.distance(*p)).fold(f64::INFINITY, f64::min) < free
-    };
+    let near =
+        |p: &DVec2| curve::nearest(parent, *p).is_some_and(|(foot, _)| foot.distance(*p) < free);
     let most = (line.len() as f64 * STRAIGHT) as usize;
     let clings = line[1..].iter().take(most).take_while(|p| near(p)).count();
     let mut freed = vec![line[0]];

@@ -77,7 +77,7 @@
 //! margin
 //! raster                                     pixels
 //! geometry                                   mathematics
-//! parameter  point_list  units  seed  observer
+//! parameter  point_list  units  seed  observer  parallel
 //! ```
 //!
 //! # Spaces and units
@@ -87,6 +87,7 @@
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod observer;
+pub mod parallel;
 pub mod parameter;
 pub mod point_list;
 pub mod seed;

@@ -2,12 +2,14 @@
 //! side, labelled, with their measures.
 
 mod cases;
+mod measures;
 mod season;
 mod trails;
 
 use std::path::PathBuf;
 
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use venation::document::Document;
 use venation::io;
 use venation::margin::shapes;
@@ -56,11 +58,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
     /// The picture to write (PNG).
-    #[arg(short, long, value_name = "FILE.png", required_unless_present = "csv")]
+    #[arg(short, long, value_name = "FILE.png", required_unless_present_any = ["csv", "json"])]
     out: Option<PathBuf>,
     /// The measures of every leaf as CSV.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
+    /// Report files and measures on stdout as one JSON document.
+    #[arg(long, conflicts_with = "dry_run")]
+    json: bool,
     /// Only list the files that would be written.
     #[arg(short = 'n', long)]
     dry_run: bool,
@@ -122,16 +127,31 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             by => format!("{name}: {}, seed {}", by.title(), seeds[0]),
         };
         super::save(path, sheet(&title, args.by, &mut cells)?)?;
-        writeln!(context.stdout, "{}", path.display())?;
     }
     if let Some(path) = &args.csv {
-        super::save(path, table(args.by, &cells).into_bytes())?;
-        writeln!(context.stdout, "{}", path.display())?;
+        super::save(path, measures::table(args.by, &cells).into_bytes())?;
     }
-    if !context.quiet {
-        eprint!("{}", summary(args.by, &cells));
+    report(args, &measures::records(&cells), context)?;
+    if !context.quiet && !args.json {
+        eprint!("{}", measures::summary(args.by, &cells));
     }
     Ok(())
+}
+
+/// The files that were written, and as JSON what was measured, too.
+fn report(args: &Args, leaves: &[Value], context: &mut Context<'_>) -> Result<(), Failure> {
+    if !args.json {
+        return list(args, context);
+    }
+    let files: Vec<String> =
+        args.out.iter().chain(&args.csv).map(|path| path.display().to_string()).collect();
+    let document = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "by": args.by.word(),
+        "files": files,
+        "leaves": leaves,
+    });
+    Ok(writeln!(context.stdout, "{document:#}")?)
 }
 
 /// The files that a sheet and its table would be.
@@ -149,6 +169,9 @@ fn through_the_year(
     context: &mut Context<'_>,
 ) -> Result<(), Failure> {
     if let (Some(frames), Some(out)) = (args.frames, &args.out) {
+        if args.json {
+            return Err(Failure::Input("--json: a film has no measures".into()));
+        }
         let year = season::Year::new(document, seed)?;
         return year.film(frames as usize, out, (args.force, args.dry_run), context);
     }
@@ -156,14 +179,14 @@ fn through_the_year(
     if args.dry_run {
         return list(args, context);
     }
-    let (sheet, table) = season::Year::new(document, seed)?.sheet()?;
-    for (path, bytes) in [(&args.out, sheet), (&args.csv, table.into_bytes())] {
-        if let Some(path) = path {
-            super::save(path, bytes)?;
-            writeln!(context.stdout, "{}", path.display())?;
-        }
+    let (sheet, states) = season::Year::new(document, seed)?.sheet()?;
+    if let Some(path) = &args.out {
+        super::save(path, sheet)?;
     }
-    Ok(())
+    if let Some(path) = &args.csv {
+        super::save(path, season::table(&states).into_bytes())?;
+    }
+    report(args, &states.iter().map(season::State::record).collect::<Vec<_>>(), context)
 }
 
 /// The seeds of a contact sheet unless others are asked for.
@@ -235,94 +258,4 @@ fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
     let panel_px = first.picture.width().min(PANEL_PX);
     let picture = montage::sheet(title, &panels, Layout { columns: by.columns(), panel_px });
     Ok(io::image::colour_png(&picture, &io::image::Caption::default()))
-}
-
-fn table(by: By, cells: &[Cell]) -> String {
-    let mut text = format!(
-        "{},seed,nodes,tips,sinuosity,vein_length_mm,tip_step,unreached_sources,midrib_sinuosity,\
-         secondaries_right,secondaries_left,secondary_sinuosity,spacing_variation\n",
-        by.word()
-    );
-    for cell in cells {
-        let m = &cell.metrics;
-        text += &format!(
-            "{},{},{},{},{:.5},{:.2},{:.4},{},{}\n",
-            cell.case.label(),
-            cell.seed,
-            m.nodes,
-            m.tips,
-            m.sinuosity,
-            m.length_mm,
-            m.apex_reached_at,
-            m.unreached_sources,
-            cell.hierarchy.map_or_else(
-                || ",,,,".to_owned(),
-                |h| {
-                    let [right, left] = h.secondaries;
-                    let (rib, side) = (h.midrib_sinuosity, h.secondary_sinuosity);
-                    format!("{rib:.5},{right},{left},{side:.5},{:.4}", h.spacing_variation)
-                }
-            )
-        );
-    }
-    text
-}
-
-/// Means over the seeds, for the person.
-fn summary(by: By, cells: &[Cell]) -> String {
-    if by == By::Emergence {
-        return hierarchies(cells);
-    }
-    let width = by.cases().iter().map(|case| case.label().len() + 1).fold(12, usize::max);
-    let mut text = format!(
-        "{:width$} {:>7} {:>7} {:>9} {:>9}\n",
-        by.word(),
-        "nodes",
-        "tips",
-        "sinuosity",
-        "tip step"
-    );
-    for case in by.cases() {
-        let these: Vec<&Cell> = cells.iter().filter(|cell| cell.case == case).collect();
-        let mean = |value: fn(&VeinMetrics) -> f64| {
-            these.iter().map(|cell| value(&cell.metrics)).sum::<f64>() / these.len() as f64
-        };
-        text += &format!(
-            "{:width$} {:>7.0} {:>7.0} {:>9.4} {:>8.0}%\n",
-            case.label(),
-            mean(|m| m.nodes as f64),
-            mean(|m| m.tips as f64),
-            mean(|m| m.sinuosity),
-            mean(|m| 100.0 * m.apex_reached_at)
-        );
-    }
-    text
-}
-
-/// The same for what stands out in a hierarchy of veins.
-fn hierarchies(cells: &[Cell]) -> String {
-    let mut text = format!(
-        "{:16} {:>7} {:>11} {:>11} {:>15} {:>8}\n",
-        "emergence", "midrib", "secondaries", "difference", "their sinuosity", "spacing"
-    );
-    for case in By::Emergence.cases() {
-        let these: Vec<Hierarchy> = cells
-            .iter()
-            .filter(|cell| cell.case == case)
-            .filter_map(|cell| cell.hierarchy)
-            .collect();
-        let mean = |value: &dyn Fn(&Hierarchy) -> f64| {
-            these.iter().map(value).sum::<f64>() / these.len().max(1) as f64
-        };
-        text += &format!(
-            "{:16} {:>7.4} {:>11.1} {:>11.1} {:>15.4} {:>8.3}\n",
-            case.label(),
-            mean(&|h| h.midrib_sinuosity),
-            mean(&|h| h.secondaries.iter().sum::<usize>() as f64),
-            mean(&|h| h.difference() as f64),
-            mean(&|h| h.secondary_sinuosity),
-            mean(&|h| h.spacing_variation)
-        );
-    }
-    text
 }

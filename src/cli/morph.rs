@@ -36,9 +36,9 @@ growing leaf grows. A reference of weight 0 counts for nothing; the larger its w
 path comes to it.
 
 With --veins the guides of both ends are laid and matched: on the way veins move from where one leaf has \
-them to where the other has. Two leaves of one type of primary veins have as many guides as TO all the \
-way, so that none is born; between others, and with --own-veins, both ends are as `generate` makes them, \
-and what only one has grows out on the way.")]
+them to where the other has. All frames have as many: those that one end has not are there as buds of a \
+few steps. Two leaves of one type of primary veins have as many as TO. With --own-veins (and at the end \
+of a fan) both ends are as `generate` makes them, without buds.")]
 pub(crate) struct Args {
     /// The first leaf: a preset or a TOML file.
     #[arg(value_name = "FROM")]

@@ -276,6 +276,34 @@ fn compare_writes_a_sheet_and_a_table() {
 }
 
 #[test]
+fn compare_reports_measures_alone_on_stdout() {
+    let folder = fresh();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let arguments = [&["compare", "beech", "--json"], arguments].concat();
+        serde_json::from_str(&succeed(folder.path(), &small(&arguments))).expect("JSON alone")
+    };
+    let report = json(&["--csv", "table.csv", "--seeds", "1-2"]);
+    assert_eq!(report["by"], "growth");
+    assert_eq!(report["files"], serde_json::json!(["table.csv"]));
+    let table = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
+    let leaves = report["leaves"].as_array().expect("a list");
+    assert_eq!(leaves.len(), table.lines().count() - 1);
+    for (row, leaf) in table.lines().skip(1).zip(leaves) {
+        let nodes = leaf["nodes"].to_string();
+        assert!(row.starts_with(&format!(
+            "{},{},{nodes},",
+            leaf["case"].as_str().unwrap(),
+            leaf["seed"]
+        )));
+    }
+    let year = json(&["--by", "season"]);
+    assert_eq!(year["leaves"][0]["state"], "spring");
+    assert_eq!(year["files"], serde_json::json!([]));
+    let film = ["compare", "beech", "--by", "season", "--frames", "2", "--json", "-o", "f.png"];
+    assert!(fail(folder.path(), 2, &small(&film)).contains("--json"));
+}
+
+#[test]
 fn compare_shows_scatter_patterns_by_spacing_and_algorithms() {
     let folder = fresh();
     let by = |word| ["compare", "lilac", "--by", word, "--csv", "t.csv", "-o", "s.png", "--force"];

@@ -75,20 +75,26 @@ fn mistakes_are_named() {
     assert!(std::fs::read_dir(folder.path()).expect("the folder").next().is_none());
 }
 
-/// Where secondaries leave primary veins, on the right and the left of those, and how far up primary veins
-/// get, in lengths of the blade.
+/// Where secondaries leave primary veins, on the right and the left of those, as the way along the veins
+/// from the base (a lobe that turns carries its veins along), and how far up primary veins get, in lengths of
+/// the blade.
 fn insertions(spec: &LeafSpec, margin: &Margin) -> ([Vec<f64>; 2], f64) {
     let blade = GrowingBlade::new(margin.clone(), &spec.growth).expect("it grows");
     let graph = guides::build(&spec.veins.scaled(), &blade, &mut Seed(1).stream(Stage::Guides));
     assert_eq!(graph.check(), None);
     let kind = |node| graph.rank(node).map(|rank| rank.kind);
+    let mut way = vec![0.0; graph.len()];
+    for (parent, child) in graph.edges() {
+        let [from, to] = [parent, child].map(|node| graph.positions()[node as usize]);
+        way[child as usize] = way[parent as usize] + from.distance(to) / margin.length_mm();
+    }
     let mut sides = [Vec::new(), Vec::new()];
     for (parent, child) in graph.edges() {
         if kind(child) == Some(VeinKind::Secondary) && kind(parent) == Some(VeinKind::Primary) {
             let at = |node: u32| graph.positions()[node as usize];
             let ahead = graph.parent(parent).map_or(DVec2::Y, |back| at(parent) - at(back));
             let left = ahead.perp_dot(at(child) - at(parent)) > 0.0;
-            sides[usize::from(left)].push(at(parent).y / margin.length_mm());
+            sides[usize::from(left)].push(way[parent as usize]);
         }
     }
     sides.iter_mut().for_each(|side| side.sort_by(f64::total_cmp));
@@ -102,7 +108,7 @@ fn insertions(spec: &LeafSpec, margin: &Margin) -> ([Vec<f64>; 2], f64) {
 struct Changes {
     /// Frames after which their number on a side is another.
     number: Vec<usize>,
-    /// How far one moves at most where it stays, in lengths.
+    /// How far one moves at most along the vein it leaves, in lengths of the blade.
     step: f64,
     /// The midrib ends no lower than this.
     midrib: f64,
@@ -152,16 +158,19 @@ fn changes(from: &str, to: &str, own: bool) -> Changes {
 
 #[test]
 fn secondaries_keep_number_and_side_and_move_little_between_frames_of_60() {
-    let pairs = [("beech", "birch"), ("beech", "willow"), ("oak", "dogwood"), ("linden", "maple")];
+    let pairs = [
+        ("beech", "birch"),
+        ("beech", "willow"),
+        ("oak", "dogwood"),
+        ("linden", "maple"),
+        ("oak", "maple"),
+    ];
     for (from, to) in pairs {
         let changes = changes(from, to, false);
         assert!(changes.number.is_empty(), "{from} to {to}: {changes:?}");
         assert!(changes.step < 0.02, "{from} to {to}: {changes:?}");
         assert!(changes.midrib > 0.9, "{from} to {to}: {changes:?}");
     }
-    // Between a midrib and rays the ends differ: none jumps on the way.
-    let changes = changes("oak", "maple", false);
-    assert!(changes.step < 0.02, "{changes:?}");
 }
 
 #[test]
@@ -180,8 +189,7 @@ fn secondaries_of_all_presets_keep_number_and_side() {
             let to = names[(i + distance) % names.len()];
             let changes = changes(from, to, false);
             println!("{from} to {to}: {changes:?}");
-            let inner = changes.number.iter().any(|frame| ![1, 59].contains(frame));
-            if inner || changes.step >= 0.02 {
+            if !changes.number.is_empty() || changes.step >= 0.02 {
                 wrong.push(format!("{from} to {to}: {changes:?}"));
             }
         }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::{Value, json};
 use venation::document::Document;
 use venation::io::image::{Caption, colour_png, film};
 use venation::io::write::{Overwrite, write_files};
@@ -54,18 +55,14 @@ impl Year {
         Ok(pipeline::paint(&spec, &self.grown, Seed(self.seed), &mut Silent)?)
     }
 
-    /// The labelled sheet: front, back and against the light, a column for every state.
-    pub(super) fn sheet(&self) -> Result<(Vec<u8>, String), Failure> {
+    /// The labelled sheet: front, back and against the light, a column for every state; and the states.
+    pub(super) fn sheet(&self) -> Result<(Vec<u8>, Vec<State>), Failure> {
         let mut rows: [Vec<Panel>; 3] = Default::default();
-        let mut table = "state,season,maturity,seed,red,green,blue,hue_deg\n".to_owned();
+        let mut states = Vec::new();
         for (name, season, maturity) in YEAR {
             let set = self.painted(season, maturity)?;
-            let [r, g, b] = mean(&set.front.base_colour);
-            let hue = hue_deg([r, g, b]);
-            table += &format!(
-                "{name},{season},{maturity},{},{r:.1},{g:.1},{b:.1},{hue:.1}\n",
-                self.seed
-            );
+            let colour = mean(&set.front.base_colour);
+            states.push(State { name, season, maturity, seed: self.seed, colour });
             let notes = vec![if maturity < 1.0 {
                 format!("maturity {maturity}")
             } else {
@@ -82,7 +79,7 @@ impl Year {
         let title = format!("{}: season, seed {}", self.spec.name, self.seed);
         let panel_px = (self.spec.texture.size_px as usize).min(PANEL_PX);
         let picture = montage::sheet(&title, &panels, Layout { columns: YEAR.len(), panel_px });
-        Ok((colour_png(&picture, &Caption::default()), table))
+        Ok((colour_png(&picture, &Caption::default()), states))
     }
 
     /// The season from 0 to 1 in `frames` pictures: an animated PNG where `out` ends in `.png`, else
@@ -126,6 +123,43 @@ impl Year {
         }
         Ok(())
     }
+}
+
+/// What a leaf looks like at a time of the year.
+pub(super) struct State {
+    name: &'static str,
+    season: f64,
+    maturity: f64,
+    seed: u64,
+    /// The mean of its front, in sRGB numbers.
+    colour: [f64; 3],
+}
+
+impl State {
+    pub(super) fn record(&self) -> Value {
+        let Self { name, season, maturity, seed, colour: [red, green, blue] } = self;
+        json!({
+            "state": name,
+            "season": season,
+            "maturity": maturity,
+            "seed": seed,
+            "red": red,
+            "green": green,
+            "blue": blue,
+            "hue_deg": hue_deg(self.colour),
+        })
+    }
+}
+
+/// States as CSV.
+pub(super) fn table(states: &[State]) -> String {
+    let mut text = "state,season,maturity,seed,red,green,blue,hue_deg\n".to_owned();
+    for state in states {
+        let State { name, season, maturity, seed, colour: [r, g, b] } = state;
+        let hue = hue_deg(state.colour);
+        text += &format!("{name},{season},{maturity},{seed},{r:.1},{g:.1},{b:.1},{hue:.1}\n");
+    }
+    text
 }
 
 /// What shines through the leaf.

@@ -42,6 +42,10 @@ impl Views {
     }
 }
 
+/// New nodes for each thread, at least: a source only compares a distance, and its place in memory is
+/// wanted by one thread again in the next step.
+const A_THREAD: usize = 1024;
+
 /// The living sources and whom they call.
 pub(super) struct Sources {
     field: Field<Claim>,
@@ -265,9 +269,11 @@ impl Callers for Sources {
             });
         } else {
             let search = self.ranges.search(metric);
-            self.field.offer(before as NodeId, fresh, search, metric, |hit, _, claim| Told {
-                bound2: claim.hear(hit.node, hit.distance2, kill2, bounds_others),
-                is_marked: false,
+            self.field.offer(before as NodeId, fresh, search, metric, A_THREAD, |hit, _, claim| {
+                Told {
+                    bound2: claim.hear(hit.node, hit.distance2, kill2, bounds_others),
+                    is_marked: false,
+                }
             });
         }
         let mut reached = std::mem::take(&mut self.doomed);

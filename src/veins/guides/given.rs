@@ -169,17 +169,23 @@ fn branch(
         return None;
     }
     // Where veins crowd, out of a node beside or at another angle: a vein does not go and come again.
-    let tries =
-        ASIDE_DEG.iter().flat_map(|degrees| start.beside.iter().map(move |at| (degrees, at)));
-    tries.into_iter().find_map(|(&degrees, &node)| {
-        let from = planter.graph.positions()[node as usize];
-        let turn = DVec2::from_angle(degrees.to_radians());
-        let turned: Vec<DVec2> =
-            begun_at(&course, from).iter().map(|p| from + turn.rotate(*p - from)).collect();
-        let turned = aside(turned, start.parent, start.share, left, planter.ground.length());
-        let vein = planter.lay(node, &turned, rank, 0.0)?;
-        Some((vein, turned))
-    })
+    let tries: Vec<(NodeId, Vec<DVec2>)> = ASIDE_DEG
+        .iter()
+        .flat_map(|degrees| start.beside.iter().map(move |at| (degrees, *at)))
+        .map(|(degrees, node)| {
+            let from = planter.graph.positions()[node as usize];
+            let turn = DVec2::from_angle(degrees.to_radians());
+            let turned =
+                begun_at(&course, from).iter().map(|p| from + turn.rotate(*p - from)).collect();
+            (node, aside(turned, start.parent, start.share, left, planter.ground.length()))
+        })
+        .collect();
+    let laid =
+        tries.iter().find_map(|(node, line)| Some((planter.lay(*node, line, rank, 0.0)?, line)));
+    let laid = laid.or_else(|| {
+        tries.iter().find_map(|(node, line)| Some((planter.lay_bud(*node, line, rank)?, line)))
+    });
+    laid.map(|(vein, line)| (vein, line.clone()))
 }
 
 /// How far a vein without room is turned.

@@ -70,9 +70,13 @@ impl<'a> Ground<'a> {
     /// Guides keep less of the inset at the base, where the margin begins: `share` of the way from there.
     fn is_apart(&self, a: DVec2, b: DVec2, share: f64) -> bool {
         let inset = self.inset.min(share * b.distance(self.root));
-        polygon::contains(self.margin.outline(), b)
-            && !self.lines.touches(a, b)
+        self.is_inside(a, b)
             && self.lines.nearest(b, inset).is_none_or(|(d2, _)| d2 >= inset * inset)
+    }
+
+    /// Whether no margin and no cut lies between, however near.
+    pub(super) fn is_inside(&self, a: DVec2, b: DVec2) -> bool {
+        polygon::contains(self.margin.outline(), b) && !self.lines.touches(a, b)
     }
 
     /// The line with what lies outside, or too near to the margin, moved to where a guide may run.

@@ -17,6 +17,9 @@ pub(super) const CLEARANCE: f64 = 1.5;
 /// As many where their courses are known not to meet.
 pub(super) const CLOSE: f64 = 0.4;
 
+/// The steps of a bud, in steps.
+const BUD: f64 = 0.4;
+
 /// The veins laid so far.
 pub(super) struct Planter<'a> {
     pub(super) ground: &'a Ground<'a>,
@@ -107,7 +110,7 @@ impl<'a> Planter<'a> {
         let start = self.graph.positions()[from as usize];
         let mut line = line.to_vec();
         *line.first_mut()? = start;
-        let points = curve::resampled(&line, self.step);
+        let mut points = curve::resampled(&line, self.step);
         let mut hit = None;
         let mut free = 1;
         while free < points.len() {
@@ -130,18 +133,36 @@ impl<'a> Planter<'a> {
         if free < 3 || ((free - 1) as f64) < least * (points.len() - 1) as f64 {
             return None;
         }
+        points.truncate(free);
+        Some(self.grow(from, points, rank, hit))
+    }
+
+    /// Lays the least vein there is out of `from` along `line`, of two short steps, close to the margin if
+    /// it must.
+    pub(super) fn lay_bud(&mut self, from: NodeId, line: &[DVec2], rank: Rank) -> Option<Vein> {
+        let start = self.graph.positions()[from as usize];
+        let whole = curve::resampled(line, BUD * self.step);
+        let points = whole.get(..3)?.to_vec();
+        let is_free = |w: &[DVec2]| {
+            self.ground.is_inside(w[0], w[1]) && self.in_the_way(w[0], w[1], from, start).is_none()
+        };
+        points.windows(2).all(is_free).then(|| self.grow(from, points, rank, None))
+    }
+
+    /// Adds the nodes of a vein.
+    fn grow(&mut self, from: NodeId, line: Vec<DVec2>, rank: Rank, hit: Option<NodeId>) -> Vein {
         // A vein along the margin can begin at a branch of a secondary.
         let least = self.graph.rank(from).map_or(0, |parent| parent.order);
         let rank = Rank { order: rank.order.max(least), ..rank };
         let mut nodes = vec![from];
-        for &p in &points[1..free] {
+        for &p in &line[1..] {
             let node = self.graph.sprout(nodes[nodes.len() - 1], p);
             self.graph.set_rank(node, rank);
             self.near.push(p);
             nodes.push(node);
         }
         self.records.push(Record { nodes: nodes.clone(), rank, joined: None });
-        Some(Vein { nodes, line: points[..free].to_vec(), hit })
+        Vein { nodes, line, hit }
     }
 
     /// Whether margin and cuts let a vein of this rank go from a to b.

@@ -75,7 +75,8 @@ impl Sources {
     ) -> Vec<u32> {
         let kill2 = self.ranges.kill2(metric);
         let mut reached = std::mem::take(&mut self.reached);
-        reached.sort_unstable();
+        // Those that wait stand in order already, which this sort makes use of.
+        reached.sort();
         reached.dedup();
         let mut meetings = Vec::new();
         reached.retain(|&source| {

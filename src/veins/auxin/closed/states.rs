@@ -10,6 +10,9 @@ use super::{Sources, State};
 use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
+/// New nodes for each thread, at least: sharing out costs as much as some of them.
+const A_THREAD: usize = 24;
+
 impl Sources {
     /// Looks the neighbours of a place up from nothing.
     pub(super) fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
@@ -54,7 +57,7 @@ impl Sources {
             Told { bound2: state.around.most2(), is_marked }
         };
         let fresh = &nodes.positions()[before..];
-        let reached = self.field.offer(before as NodeId, fresh, search, metric, hear);
+        let reached = self.field.offer(before as NodeId, fresh, search, metric, A_THREAD, hear);
         self.reached.extend(reached);
     }
 }

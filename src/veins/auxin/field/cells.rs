@@ -84,6 +84,11 @@ impl Cells {
         order
     }
 
+    /// The first slot sorted into a row, or after the last row that of the newborn.
+    pub(super) fn first_of(&self, row: usize) -> usize {
+        self.starts[row * self.columns] as usize
+    }
+
     /// The slots sorted into the cells of a row, from column to column.
     pub(super) fn run(&self, row: usize, first: usize, last: usize) -> std::ops::Range<usize> {
         let at = row * self.columns;

@@ -9,6 +9,7 @@
 
 mod laid;
 mod pairs;
+mod spacing;
 mod strand;
 
 use glam::DVec2;
@@ -46,6 +47,8 @@ struct Vein {
     lives: Lives,
     is_main: bool,
     is_left: bool,
+    /// How many main veins leave it on the side where most do.
+    bears: usize,
 }
 
 /// Which ends have a vein.
@@ -59,6 +62,12 @@ enum Lives {
 /// Main veins that grow out of nothing have so many steps from the start: shorter ones are not laid, and
 /// would spring up one by one.
 const LEAST_STEPS: f64 = 4.0;
+
+/// One that only one end has leaves so many of the least lengths from the next.
+const APART: f64 = 0.75;
+
+/// None leaves beyond this share of its parent, but for those that go on from its end.
+const TIP: f64 = 0.97;
 
 impl CarriedGuides {
     /// Lays and matches the guides of the first and the last leaf of a path. What is irregular about them
@@ -94,11 +103,13 @@ impl CarriedGuides {
         Ok(Self { veins, order, fan_spacing_mm, alike })
     }
 
-    /// Whether veins come and go nowhere when the ends have the guides of their own types: every main vein of
-    /// one has its like in the other, or the types of primaries differ and cannot all.
+    /// Whether veins come and go nowhere when the ends have the guides of their own types: they have one
+    /// type of primaries, and every main vein of one has its like in the other. A fan at an end is laid as
+    /// one.
     #[must_use]
     pub fn fits_ends(&self) -> bool {
-        !self.alike || self.veins.iter().all(|vein| !vein.is_main || vein.lives == Lives::Always)
+        let is_met = |vein: &Vein| !vein.is_main || vein.lives == Lives::Always;
+        self.fan_spacing_mm.is_some() || self.alike && self.veins.iter().all(is_met)
     }
 
     /// Gives a leaf on the way its guides: those at `u`, as `share` of the last leaf (0 to 1).
@@ -125,8 +136,8 @@ impl CarriedGuides {
     }
 
     fn at(&self, sides: &Sides, share: f64, least: f64) -> GivenSpec {
-        let mut lines = Lines { guides: self, sides, share, least, done: Vec::new() };
-        lines.done.resize(self.veins.len(), Progress::Open);
+        let (done, from) = (vec![Progress::Open; self.veins.len()], vec![None; self.veins.len()]);
+        let mut lines = Lines { guides: self, sides, share, least, done, from };
         let mut given = GivenSpec::default();
         for &i in &self.order {
             let line = lines.line(i);
@@ -165,7 +176,7 @@ fn veins(laid: [&[Laid]; 2], sides: [&Sides; 2]) -> Vec<Vein> {
     }
     let joined = |k: usize, i: usize| laid[k][i].joined.map(|(to, share)| (places[k][to], share));
     let own = |k: usize, i: usize| Strand { joined: joined(k, i), ..strands[k][i].clone() };
-    pairs
+    let mut veins: Vec<Vein> = pairs
         .iter()
         .map(|pair| {
             let of = match pair.of {
@@ -191,9 +202,18 @@ fn veins(laid: [&[Laid]; 2], sides: [&Sides; 2]) -> Vec<Vein> {
                 },
                 is_main: any(Group::is_main),
                 is_left: any(Group::is_left),
+                bears: 0,
             }
         })
-        .collect()
+        .collect();
+    for i in 0..veins.len() {
+        let borne = |left: bool| {
+            let is_borne = |v: &&Vein| v.parent == Some(i) && v.is_main && v.is_left == left;
+            veins.iter().filter(is_borne).count()
+        };
+        veins[i].bears = borne(false).max(borne(true));
+    }
+    veins
 }
 
 /// A strand of leaf `k` as the other leaf would have it: in the answering gap between its neighbours.
@@ -225,6 +245,8 @@ struct Lines<'a> {
     /// Main veins are no shorter.
     least: f64,
     done: Vec<Progress>,
+    /// The shares of their parents at which they leave.
+    from: Vec<Option<f64>>,
 }
 
 impl Lines<'_> {
@@ -235,13 +257,15 @@ impl Lines<'_> {
         self.done[i] = Progress::Asked;
         let vein = &self.guides.veins[i];
         let between = Between { of: &vein.of, share: self.share, sides: self.sides };
+        let mut share = 0.0;
         let from = match vein.parent {
             Some(parent) => {
-                let parent = self.line(parent);
-                if parent.len() < 2 {
+                let line = self.line(parent);
+                if line.len() < 2 {
                     return self.finish(i, Vec::new());
                 }
-                curve::at(&parent, between.from()).0
+                share = self.leaves_at(i, parent, curve::length(&line));
+                curve::at(&line, share).0
             }
             None => DVec2::ZERO,
         };
@@ -256,7 +280,7 @@ impl Lines<'_> {
         });
         let mut line = between.line(from, met);
         if let Some(parent) = vein.parent.filter(|_| vein.is_main) {
-            line = aside(line, &self.line(parent), between.from(), vein.is_left, 1.0);
+            line = aside(line, &self.line(parent), share, vein.is_left, 1.0);
         }
         let grown = match vein.lives {
             Lives::Always => return self.finish(i, line),
@@ -264,9 +288,48 @@ impl Lines<'_> {
             Lives::Last => self.share,
         };
         let whole = curve::length(&line);
-        let least = if vein.is_main { self.least.min(whole) } else { 0.0 };
+        // A bud has room for the buds on it.
+        let least = self.least * (1.0 + APART * vein.bears as f64);
+        let least = if vein.is_main { least.min(whole) } else { 0.0 };
         let share = (grown * whole).max(least) / whole.max(1e-300);
         self.finish(i, curve::beginning(&line, share))
+    }
+
+    /// The share of its parent, of this length, at which a vein leaves. Where gaps close on the way, those
+    /// that one end has not keep some room: on one place there would be no telling them apart.
+    fn leaves_at(&mut self, i: usize, parent: usize, length: f64) -> f64 {
+        if let Some(share) = self.from[i] {
+            return share;
+        }
+        let veins = &self.guides.veins;
+        let mixed = |j: usize| {
+            let between = Between { of: &veins[j].of, share: self.share, sides: self.sides };
+            between.from()
+        };
+        let own = mixed(i);
+        let is_kin = |j: &usize| {
+            let kin = &veins[*j];
+            kin.parent == Some(parent)
+                && kin.is_main
+                && kin.is_left == veins[i].is_left
+                && mixed(*j) <= TIP
+        };
+        if !veins[i].is_main || own > TIP {
+            return own;
+        }
+        let mut kin: Vec<usize> = (0..veins.len()).filter(is_kin).collect();
+        kin.sort_by(|a, b| mixed(*a).total_cmp(&mixed(*b)));
+        let places: Vec<f64> = kin.iter().map(|&j| mixed(j)).collect();
+        let passes = |j: usize| veins[j].lives != Lives::Always;
+        let gap = |n: usize| {
+            let crowds = passes(kin[n]) || n > 0 && passes(kin[n - 1]);
+            if crowds { APART * self.least / length } else { 0.0 }
+        };
+        let gaps: Vec<f64> = (0..kin.len()).map(gap).collect();
+        for (j, place) in kin.into_iter().zip(spacing::spaced(&places, &gaps, TIP)) {
+            self.from[j] = Some(place);
+        }
+        self.from[i].unwrap_or(own)
     }
 
     fn finish(&mut self, i: usize, line: Vec<DVec2>) -> Vec<DVec2> {

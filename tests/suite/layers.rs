@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// The lines from the bottom up; modules of one line do not know each other.
 const LINES: &[&[&str]] = &[
-    &["units", "seed", "observer", "parameter", "point_list", "spelling"],
+    &["units", "seed", "observer", "parallel", "parameter", "point_list", "spelling"],
     &["geometry"],
     &["raster"],
     &["margin"],

@@ -115,7 +115,7 @@ impl Ranges {
 }
 
 /// Why sources are left, where `nearest` tells the nearest node in reach of one in a slot.
-pub(super) fn unreached<S>(
+pub(super) fn unreached<S: Copy + Send + Sync>(
     field: &Field<S>,
     blade: &GrowingBlade,
     nodes: &Nodes,

@@ -12,13 +12,14 @@
 //! graph; a tagged source waits no longer than twice the time that the farthest of its veins needs on
 //! a straight way, because one that others hold away would be called for ever; loops are stored.
 
+mod calling;
 mod reached;
 mod states;
 
 use glam::DVec2;
 
 use super::NONE;
-use super::callers::{self, Callers, Ranges, unit};
+use super::callers::{self, Callers, Ranges};
 use super::calls::Calls;
 use super::field::Field;
 use super::horizon::Horizon;
@@ -53,6 +54,8 @@ pub(super) struct Sources {
     horizon: Horizon,
     ranges: Ranges,
     calls: Calls,
+    /// What sources that call find out, by thread.
+    answers: Vec<calling::Answers>,
     tags: Vec<Tag>,
     free_tags: Vec<u32>,
     /// Sources to which a node has come within the kill distance, and those that wait.
@@ -70,6 +73,7 @@ impl Sources {
             horizon: Horizon::new(blade.mature().outline()),
             ranges: Ranges::new(spec),
             calls: Calls::default(),
+            answers: Vec::new(),
             tags: Vec::new(),
             free_tags: Vec::new(),
             reached: Vec::new(),
@@ -81,25 +85,28 @@ impl Sources {
 
     /// Whether a source sees its neighbour in a sixth.
     fn sees(&mut self, i: usize, k: usize, node: NodeId, at: At<'_>) -> bool {
-        if self.convex {
-            return true;
+        let sight = self.sight(&self.field.state(i).around, self.field.place(i), (k, node), at);
+        if sight.is_lasting {
+            self.field.state_mut(i).around.set_sight(k, sight.is_clear);
         }
-        let p = self.field.place(i);
-        let around = &mut self.field.state_mut(i).around;
-        if let Some(sight) = around.sight(k) {
-            return sight;
+        sight.is_clear
+    }
+
+    /// The same of a source at `p` with these neighbours.
+    fn sight(&self, around: &Around, p: DVec2, (k, node): (usize, NodeId), at: At<'_>) -> Sight {
+        if self.convex {
+            return Sight { is_clear: true, is_lasting: false };
+        }
+        if let Some(is_clear) = around.sight(k) {
+            return Sight { is_clear, is_lasting: false };
         }
         let q = at.nodes.position(node);
         if at.blade.blocks_sight_for_ever(p, q) {
-            around.set_sight(k, false);
-            return false;
+            return Sight { is_clear: false, is_lasting: true };
         }
-        let clear = !at.blade.blocks_sight_yet(p, q, at.step);
-        if clear {
-            // The blade only gains tissue: what is clear stays clear.
-            around.set_sight(k, true);
-        }
-        clear
+        // The blade only gains tissue: what is clear stays clear.
+        let is_clear = !at.blade.blocks_sight_yet(p, q, at.step);
+        Sight { is_clear, is_lasting: is_clear }
     }
 
     /// The same sources in open venation.
@@ -119,6 +126,13 @@ impl Sources {
         }
         sources
     }
+}
+
+/// Whether a source sees a neighbour.
+struct Sight {
+    is_clear: bool,
+    /// Whether that is news and remains so.
+    is_lasting: bool,
 }
 
 /// Where and when.
@@ -157,46 +171,7 @@ impl Callers for Sources {
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
         self.calls.begin(nodes.len());
         self.horizon.follow(metric);
-        let at = At { blade, step, nodes };
-        let ranges = self.ranges;
-        let (kill2, search2) = (ranges.kill2(metric), ranges.search2(metric));
-        let reach2 = ranges.reach2(metric);
-        let mut acting = self.field.take_acting();
-        acting.retain(|&source| {
-            let Some(i) = self.field.slot(source) else { return false };
-            let p = self.field.place(i);
-            if self.deforms {
-                let around = self.look_around(p, nodes, metric);
-                self.store(i, around);
-            }
-            let State { around, tag } = *self.field.state(i);
-            if self.warps && around.least2() <= kill2 && tag == NONE {
-                self.reached.push(source);
-            }
-            if around.least2() > search2 {
-                if self.warps {
-                    return true;
-                }
-                // Distances only grow: those nodes will not matter again.
-                self.field.retire(i);
-                self.store(i, Around::EMPTY);
-                return false;
-            }
-            if tag != NONE {
-                self.follow_tag(i, nodes);
-            }
-            for (k, node, distance2) in around.neighbours() {
-                let is_called = distance2 > kill2
-                    && distance2 <= reach2
-                    && (tag == NONE || self.tags[tag as usize].veins[k] == node)
-                    && self.sees(i, k, node, at);
-                if is_called {
-                    self.calls.add(source, node, unit(nodes.position(node), p, metric));
-                }
-            }
-            true
-        });
-        self.field.set_acting(acting);
+        self.call_all(At { blade, step, nodes }, metric);
     }
 
     fn calls(&self) -> &Calls {

@@ -10,6 +10,7 @@ mod cells;
 mod offer;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use self::cells::Cells;
 use super::NONE;
@@ -33,7 +34,7 @@ const IN_A_CELL: f64 = 32.0;
 const CELLS_A_SOURCE: f64 = 4.0;
 
 /// A source and what it knows of the nodes.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Source<S> {
     pub(super) id: u32,
     /// Whether it is in the list of those in reach, or about to be.
@@ -111,7 +112,7 @@ pub(super) struct Field<S> {
     finds: Vec<offer::Finds>,
 }
 
-impl<S> Field<S> {
+impl<S: Copy + Send + Sync> Field<S> {
     pub(super) fn new(bounds: Rect) -> Self {
         Self {
             bounds,
@@ -254,10 +255,9 @@ impl<S> Field<S> {
         let alive = |slot: &u32| self.bound2[*slot as usize] != DEAD;
         let living: Vec<u32> = (0..self.places.len() as u32).filter(alive).collect();
         let order = cells.sort(&living, &self.places);
-        self.places = order.iter().map(|&slot| self.places[slot as usize]).collect();
-        self.bound2 = order.iter().map(|&slot| self.bound2[slot as usize]).collect();
-        let mut before: Vec<Option<Source<S>>> = self.sources.drain(..).map(Some).collect();
-        self.sources = order.iter().filter_map(|&slot| before[slot as usize].take()).collect();
+        self.places = order.par_iter().map(|&slot| self.places[slot as usize]).collect();
+        self.bound2 = order.par_iter().map(|&slot| self.bound2[slot as usize]).collect();
+        self.sources = order.par_iter().map(|&slot| self.sources[slot as usize]).collect();
         for (slot, source) in self.sources.iter().enumerate() {
             self.slots[source.id as usize] = slot as u32;
         }

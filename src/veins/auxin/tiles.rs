@@ -115,7 +115,7 @@ impl Tiles {
     /// Tells every source of the nearest of the new nodes `fresh`, wherever that may be nearer than
     /// the source's bound; `hear`, told the source's id, answers with the new bound. `bounds_others` says whether the bound is
     /// on the distance of all nodes but the nearest.
-    pub(super) fn offer<S>(
+    pub(super) fn offer<S: Copy + Send + Sync>(
         &mut self,
         field: &mut Field<S>,
         fresh: &[DVec2],

@@ -1,25 +1,28 @@
 //! Sources that a vein has come to: whom they still wait for, and what meets at their place.
 
+use rayon::prelude::*;
+
 use super::super::NONE;
-use super::super::neighbours::SECTORS;
+use super::super::neighbours::{Around, SECTORS};
 use super::super::nodes::Nodes;
-use super::{At, PATIENCE, Sources, Tag};
+use super::calling::A_THREAD;
+use super::{At, PATIENCE, Sources, State, Tag};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 
 impl Sources {
     /// Which of the relative neighbours of a tagged source it waits for: those it was tagged with and
     /// what grew out of them.
-    pub(super) fn follow_tag(&mut self, i: usize, nodes: &Nodes) {
-        let tag = &mut self.tags[self.field.state(i).tag as usize];
+    pub(super) fn followed(&self, around: &Around, tag: u32, nodes: &Nodes) -> [NodeId; SECTORS] {
+        let tagged = &self.tags[tag as usize].veins;
         let mut veins = [NONE; SECTORS];
-        for (k, node, _) in self.field.state(i).around.neighbours() {
-            let is_of = |vein: NodeId| tag.veins.contains(&vein);
+        for (k, node, _) in around.neighbours() {
+            let is_of = |vein: NodeId| tagged.contains(&vein);
             if is_of(node) || nodes.graph().parent(node).is_some_and(is_of) {
                 veins[k] = node;
             }
         }
-        tag.veins = veins;
+        veins
     }
 
     /// Tags a source that a node has come to.
@@ -78,25 +81,31 @@ impl Sources {
         // Those that wait stand in order already, which this sort makes use of.
         reached.sort();
         reached.dedup();
+        // Those that have waited before are looked after all at once.
+        let after = |source: &u32| {
+            let state = self.field.state(self.field.slot(*source)?);
+            (state.tag != NONE).then(|| self.followed(&state.around, state.tag, nodes))
+        };
+        let veins: Vec<Option<[NodeId; SECTORS]>> =
+            reached.par_iter().with_min_len(A_THREAD).map(after).collect();
+        let mut veins = veins.into_iter();
         let mut meetings = Vec::new();
         reached.retain(|&source| {
+            let veins = veins.next().flatten();
             let Some(i) = self.field.slot(source) else { return false };
-            let at = At { blade, step, nodes };
-            if self.field.state(i).tag == NONE {
-                if self.field.state(i).around.least2() > kill2 {
-                    return false;
-                }
-                self.tag(i, metric, at);
-            } else {
-                self.follow_tag(i, nodes);
+            let State { around, tag } = *self.field.state(i);
+            match veins {
+                Some(veins) => self.tags[tag as usize].veins = veins,
+                None if around.least2() > kill2 => return false,
+                None => self.tag(i, metric, At { blade, step, nodes }),
             }
-            let tag = self.tags[self.field.state(i).tag as usize];
+            // Its neighbours may have been seen meanwhile, and it been tagged.
+            let State { around, tag } = *self.field.state(i);
+            let tag = self.tags[tag as usize];
             let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
                 tag.veins[k] == node && distance2 > kill2
             };
-            let waits = patience
-                && step < tag.last_step
-                && self.field.state(i).around.neighbours().any(is_on_its_way);
+            let waits = patience && step < tag.last_step && around.neighbours().any(is_on_its_way);
             if waits {
                 return true;
             }

@@ -186,7 +186,7 @@ impl<'a, S> Part<'a, S> {
     }
 }
 
-impl<S: Send + Sync> Field<S> {
+impl<S: Copy + Send + Sync> Field<S> {
     /// Tells every source within `search` of the new nodes that matter to it; `first` is the id of the
     /// first of them. Each thread is given `a_thread` of them at least. The ids of the sources that are
     /// marked.

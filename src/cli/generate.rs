@@ -10,7 +10,6 @@ use venation::document::{Document, Value};
 use venation::io::batch::{self, Shard};
 use venation::io::write::{Overwrite, write_files};
 use venation::io::{self, LeafFiles};
-use venation::parallel;
 use venation::pipeline;
 use venation::seed::Seed;
 
@@ -116,15 +115,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
     let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
-        let one = |(job, overwrite): &(&Job, Overwrite)| {
+        let results = todo.par_iter().map(|(job, overwrite)| {
             let result = make(job, *overwrite, bars);
             counter.one_more();
             result
-        };
-        if let [alone] = &todo[..] {
-            return vec![parallel::awake(|| one(alone))];
-        }
-        todo.par_iter().map(one).collect()
+        });
+        results.collect()
     });
     drop(counter);
     report(args, context, &batch, &todo, results)

@@ -11,7 +11,7 @@ const RISE: f64 = 0.34;
 const OFF: f64 = 0.03;
 
 /// A vein that leaves past this share of its parent goes on beyond its end, where there are no sides.
-const TIP: f64 = 0.97;
+pub(super) const TIP: f64 = 0.97;
 
 /// The line moved off the parent it leaves at share `from`, where it would run along that or cross it: as
 /// the parent bends on the way from leaf to leaf, what was seen from the line's own ends can lie across it.

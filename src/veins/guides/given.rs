@@ -138,9 +138,8 @@ fn branch(
     let mut course = begun_at(line, from);
     let is_main = matches!(rank.kind, VeinKind::Primary | VeinKind::Secondary);
     let left = is_main && start.is_left(line);
-    let on_its_side = |course: Vec<DVec2>| {
-        aside(course, start.parent, start.share, left, planter.ground.length())
-    };
+    let length = planter.ground.length();
+    let on_its_side = |course: Vec<DVec2>| aside(course, start.parent, start.share, left, length);
     if is_main {
         if from.distance(line[0]) > planter.step {
             // The other had to be laid elsewhere.
@@ -169,23 +168,25 @@ fn branch(
         return None;
     }
     // Where veins crowd, out of a node beside or at another angle: a vein does not go and come again.
-    let tries: Vec<(NodeId, Vec<DVec2>)> = ASIDE_DEG
-        .iter()
-        .flat_map(|degrees| start.beside.iter().map(move |at| (degrees, *at)))
-        .map(|(degrees, node)| {
-            let from = planter.graph.positions()[node as usize];
-            let turn = DVec2::from_angle(degrees.to_radians());
-            let turned =
-                begun_at(&course, from).iter().map(|p| from + turn.rotate(*p - from)).collect();
-            (node, aside(turned, start.parent, start.share, left, planter.ground.length()))
-        })
-        .collect();
-    let laid =
-        tries.iter().find_map(|(node, line)| Some((planter.lay(*node, line, rank, 0.0)?, line)));
-    let laid = laid.or_else(|| {
-        tries.iter().find_map(|(node, line)| Some((planter.lay_bud(*node, line, rank)?, line)))
+    let tries = || {
+        let beside = |&degrees: &f64| start.beside.iter().map(move |&node| (degrees, node));
+        ASIDE_DEG.iter().flat_map(beside)
+    };
+    let turned = |planter: &Planter<'_>, degrees: f64, node: NodeId| {
+        let from = planter.graph.positions()[node as usize];
+        let turn = DVec2::from_angle(degrees.to_radians());
+        on_its_side(begun_at(&course, from).iter().map(|p| from + turn.rotate(*p - from)).collect())
+    };
+    let laid = tries().find_map(|(degrees, node)| {
+        let line = turned(planter, degrees, node);
+        Some((planter.lay(node, &line, rank, 0.0)?, line))
     });
-    laid.map(|(vein, line)| (vein, line.clone()))
+    laid.or_else(|| {
+        tries().find_map(|(degrees, node)| {
+            let line = turned(planter, degrees, node);
+            Some((planter.lay_bud(node, &line, rank)?, line))
+        })
+    })
 }
 
 /// How far a vein without room is turned.

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::super::aside::TIP;
 use super::super::curve;
 use super::super::planter::Planter;
 use crate::veins::graph::{NodeId, Rank, VeinKind};
@@ -125,7 +126,7 @@ fn group(all: &[Laid], i: usize) -> Group {
     let kind = match vein.rank.kind {
         VeinKind::Primary => 0,
         // An arch leaves the end of a secondary.
-        VeinKind::Secondary if vein.parent.is_some_and(|(_, share)| share > 0.97) => 1,
+        VeinKind::Secondary if vein.parent.is_some_and(|(_, share)| share > TIP) => 1,
         VeinKind::Secondary => 0,
         VeinKind::Intersecondary => 2,
         VeinKind::Exterior => 3,

@@ -14,7 +14,7 @@ mod strand;
 
 use glam::DVec2;
 
-use super::aside::aside;
+use super::aside::{TIP, aside};
 use super::curve;
 use super::given::GivenSpec;
 use super::{GuideSpec, PrimaryType, planted};
@@ -65,9 +65,6 @@ const LEAST_STEPS: f64 = 4.0;
 
 /// One that only one end has leaves so many of the least lengths from the next.
 const APART: f64 = 0.75;
-
-/// None leaves beyond this share of its parent, but for those that go on from its end.
-const TIP: f64 = 0.97;
 
 impl CarriedGuides {
     /// Lays and matches the guides of the first and the last leaf of a path. What is irregular about them
@@ -206,12 +203,14 @@ fn veins(laid: [&[Laid]; 2], sides: [&Sides; 2]) -> Vec<Vein> {
             }
         })
         .collect();
-    for i in 0..veins.len() {
-        let borne = |left: bool| {
-            let is_borne = |v: &&Vein| v.parent == Some(i) && v.is_main && v.is_left == left;
-            veins.iter().filter(is_borne).count()
-        };
-        veins[i].bears = borne(false).max(borne(true));
+    let mut borne = vec![[0; 2]; veins.len()];
+    for vein in veins.iter().filter(|vein| vein.is_main) {
+        if let Some(parent) = vein.parent {
+            borne[parent][usize::from(vein.is_left)] += 1;
+        }
+    }
+    for (vein, [right, left]) in veins.iter_mut().zip(borne) {
+        vein.bears = right.max(left);
     }
     veins
 }
@@ -307,26 +306,24 @@ impl Lines<'_> {
             between.from()
         };
         let own = mixed(i);
-        let is_kin = |j: &usize| {
-            let kin = &veins[*j];
-            kin.parent == Some(parent)
-                && kin.is_main
-                && kin.is_left == veins[i].is_left
-                && mixed(*j) <= TIP
-        };
         if !veins[i].is_main || own > TIP {
             return own;
         }
-        let mut kin: Vec<usize> = (0..veins.len()).filter(is_kin).collect();
-        kin.sort_by(|a, b| mixed(*a).total_cmp(&mixed(*b)));
-        let places: Vec<f64> = kin.iter().map(|&j| mixed(j)).collect();
+        let is_kin = |kin: &Vein| {
+            kin.parent == Some(parent) && kin.is_main && kin.is_left == veins[i].is_left
+        };
+        let all = veins.iter().enumerate().filter(|(_, vein)| is_kin(vein));
+        let mut kin: Vec<(f64, usize)> = all.map(|(j, _)| (mixed(j), j)).collect();
+        kin.retain(|(place, _)| *place <= TIP);
+        kin.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let places: Vec<f64> = kin.iter().map(|(place, _)| *place).collect();
         let passes = |j: usize| veins[j].lives != Lives::Always;
         let gap = |n: usize| {
-            let crowds = passes(kin[n]) || n > 0 && passes(kin[n - 1]);
+            let crowds = passes(kin[n].1) || n > 0 && passes(kin[n - 1].1);
             if crowds { APART * self.least / length } else { 0.0 }
         };
         let gaps: Vec<f64> = (0..kin.len()).map(gap).collect();
-        for (j, place) in kin.into_iter().zip(spacing::spaced(&places, &gaps, TIP)) {
+        for ((_, j), place) in kin.into_iter().zip(spacing::spaced(&places, &gaps, TIP)) {
             self.from[j] = Some(place);
         }
         self.from[i].unwrap_or(own)

@@ -255,35 +255,63 @@ impl<'a> Planter<'a> {
         self.lay(from, &rest, rank, least)
     }
 
-    /// Records that a vein has met the one that stopped it.
+    /// Records that a vein has met the one that stopped it, or one that lies between.
     pub(super) fn join_hit(&mut self, vein: &Vein) {
         let Some(hit) = vein.hit else { return };
         let (end, at, _) = vein.end();
-        let to = self.graph.positions()[hit as usize];
-        let (graph, positions) = (&self.graph, self.graph.positions());
-        let related =
-            end == hit || graph.parent(end) == Some(hit) || graph.parent(hit) == Some(end);
-        if related || !self.ground.is_free(at, to) {
+        let Some(met) = self.first_met(end, at, hit) else { return };
+        if vein.nodes.contains(&met) {
             return;
         }
-        // Another vein may lie between.
-        let half = DVec2::splat(at.distance(to) + 2.0 * self.step);
-        let crossed = self.near.any_near(to, half, |id, q| {
-            let parent = graph.parent(id);
-            let own = [id, parent.unwrap_or(id)].iter().any(|&n| n == end || n == hit);
-            !own && parent.is_some_and(|p| segments_touch(at, to, positions[p as usize], q))
-        });
-        let joined = graph.joins().iter().any(|&(c, d)| {
-            let linked = [c, d].iter().any(|&n| n == end || n == hit);
-            let [c, d] = [c, d].map(|id| positions[id as usize]);
-            !linked && segments_touch(at, to, c, d)
-        });
-        if !crossed && !joined {
-            self.graph.join(end, hit);
-            let ends_here = |record: &&mut Record| record.nodes.last() == Some(&end);
-            if let Some(record) = self.records.iter_mut().rev().find(ends_here) {
-                record.joined = Some(hit);
+        self.graph.join(end, met);
+        let ends_here = |record: &&mut Record| record.nodes.last() == Some(&end);
+        if let Some(record) = self.records.iter_mut().rev().find(ends_here) {
+            record.joined = Some(met);
+        }
+    }
+
+    /// The node that an end can be joined to without crossing anything on the way: `hit`, or the nearer
+    /// node of a vein before it.
+    fn first_met(&self, end: NodeId, at: DVec2, hit: NodeId) -> Option<NodeId> {
+        let (graph, positions) = (&self.graph, self.graph.positions());
+        let mut met = hit;
+        // Each is nearer than the one before, so this ends.
+        loop {
+            let to = positions[met as usize];
+            let reach = at.distance(to);
+            let related =
+                end == met || graph.parent(end) == Some(met) || graph.parent(met) == Some(end);
+            if related || !self.ground.is_free(at, to) {
+                return None;
             }
+            let crosses = |a: NodeId, b: NodeId| {
+                let linked = [a, b].iter().any(|&n| n == end || n == met);
+                !linked && segments_touch(at, to, positions[a as usize], positions[b as usize])
+            };
+            let mut between: Option<(f64, NodeId)> = None;
+            let mut is_clear = true;
+            let mut note = |a: NodeId, b: NodeId| {
+                is_clear = false;
+                for n in [a, b] {
+                    let distance = at.distance(positions[n as usize]);
+                    if distance < reach && between.is_none_or(|best| (distance, n) < best) {
+                        between = Some((distance, n));
+                    }
+                }
+            };
+            let half = DVec2::splat(reach + 2.0 * self.step);
+            self.near.any_near(to, half, |id, _| {
+                if let Some(parent) = graph.parent(id).filter(|&parent| crosses(parent, id)) {
+                    note(parent, id);
+                }
+                false
+            });
+            let joins = graph.joins().iter().filter(|&&(a, b)| crosses(a, b));
+            joins.for_each(|&(a, b)| note(a, b));
+            if is_clear {
+                return Some(met);
+            }
+            met = between?.1;
         }
     }
 }

@@ -141,7 +141,7 @@ impl Between<'_> {
 
     fn end(&self, from: DVec2, met: [Option<DVec2>; 2]) -> DVec2 {
         let [a, b] = self.of;
-        if met == [None, None] && a.left == b.left {
+        if met == [None, None] && a.left == b.left && (a.measure - b.measure).abs() < std::env::var("TH").unwrap().parse::<f64>().unwrap() {
             let at = self.sides[usize::from(a.left)].at(self.mix(|strand| strand.measure));
             return from + a.to.lerp(b.to, self.share).rotate(at - from);
         }

@@ -6,6 +6,7 @@ pub mod bspline;
 mod chains;
 pub mod compact;
 pub mod deviation;
+pub mod geodesic;
 pub mod measured;
 pub mod minimise;
 pub mod noise;

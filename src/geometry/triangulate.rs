@@ -11,6 +11,27 @@ use super::polygon::cross;
 #[must_use]
 pub fn with_holes(rings: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
     let corners: Vec<DVec2> = rings.iter().flatten().copied().collect();
+    let mut triangles = cut(rings);
+    triangles.retain(|t| area(&corners, t) > 0.0);
+    triangles
+}
+
+/// The same of one polygon, with the triangles that have no area: each side that is none of the polygon's is
+/// that of two.
+#[must_use]
+pub fn connected(polygon: &[DVec2]) -> Vec<[u32; 3]> {
+    cut(&[polygon.to_vec()])
+}
+
+/// Twice the area, below 0 where the corners run clockwise.
+fn area(corners: &[DVec2], triangle: &[u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
+    cross(a, b, c)
+}
+
+/// All of earcut's triangles, anticlockwise.
+fn cut(rings: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
+    let corners: Vec<DVec2> = rings.iter().flatten().copied().collect();
     let mut starts = Vec::new();
     let mut count = 0_u32;
     for ring in rings {
@@ -20,26 +41,20 @@ pub fn with_holes(rings: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
     let mut indices: Vec<u32> = Vec::new();
     let holes = starts.get(1..).unwrap_or_default();
     Earcut::new().earcut(corners.iter().map(|p| p.to_array()), holes, &mut indices);
-    let triangles = indices.as_chunks::<3>().0.iter();
+    let mut triangles = indices.as_chunks::<3>().0.to_vec();
+    // They all run the same way round.
+    if triangles.iter().map(|t| area(&corners, t)).sum::<f64>() < 0.0 {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
     triangles
-        .filter_map(|&[a, b, c]| {
-            let [p, q, r] = [a, b, c].map(|corner| corners[corner as usize]);
-            let area = cross(p, q, r);
-            if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([b, a, c]) }
-        })
-        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn area(points: &[DVec2], triangles: &[[u32; 3]]) -> f64 {
-        let of = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| points[i as usize]);
-            0.5 * cross(a, b, c)
-        };
-        triangles.iter().map(of).sum()
+    fn area_of(points: &[DVec2], triangles: &[[u32; 3]]) -> f64 {
+        triangles.iter().map(|t| 0.5 * area(points, t)).sum()
     }
 
     #[test]
@@ -50,11 +65,11 @@ mod tests {
         let rings = [square(0.0, 10.0), square(2.0, 4.0), square(6.0, 9.0)];
         let points: Vec<DVec2> = rings.iter().flatten().copied().collect();
         let triangles = with_holes(&rings);
-        assert!((area(&points, &triangles) - (100.0 - 4.0 - 9.0)).abs() < 1e-9);
+        assert!((area_of(&points, &triangles) - (100.0 - 4.0 - 9.0)).abs() < 1e-9);
         let turned: Vec<Vec<DVec2>> =
             rings.iter().map(|ring| ring.iter().rev().copied().collect()).collect();
         let points: Vec<DVec2> = turned.iter().flatten().copied().collect();
-        assert!((area(&points, &with_holes(&turned)) - 87.0).abs() < 1e-9);
+        assert!((area_of(&points, &with_holes(&turned)) - 87.0).abs() < 1e-9);
     }
 
     #[test]

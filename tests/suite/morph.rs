@@ -164,6 +164,10 @@ fn secondaries_keep_number_and_side_and_move_little_between_frames_of_60() {
         ("oak", "dogwood"),
         ("linden", "maple"),
         ("oak", "maple"),
+        // Lateral primaries that go from lobe to lobe, that a sinus reaches, that shrink.
+        ("maple", "camphor"),
+        ("ivy", "maple"),
+        ("camphor", "ivy"),
     ];
     for (from, to) in pairs {
         let changes = changes(from, to, false);

@@ -6,6 +6,7 @@ use super::aside::{self, aside};
 use super::curve;
 use super::planter::{Planter, Vein};
 use super::primary::into_lobe;
+use super::sinus;
 use super::{EXTERIOR, INTERSECONDARY, PRIMARY, SECONDARY, TERTIARY};
 use crate::geometry::Rect;
 use crate::parameter::parameters;
@@ -103,7 +104,7 @@ pub(super) fn lay(given: &GivenSpec, planter: &mut Planter<'_>) {
             let vein = if laid.is_empty() {
                 midrib(planter, &line)
             } else {
-                laid.start(line[0]).and_then(|start| branch(planter, &line, rank, &start))
+                laid.start(line[0], length).and_then(|start| branch(planter, &line, rank, &start))
             };
             if let Some((vein, course)) = vein {
                 join(planter, &vein, &line, rank);
@@ -144,6 +145,9 @@ fn branch(
         if from.distance(line[0]) > planter.step {
             // The other had to be laid elsewhere.
             course = on_its_side(course);
+        }
+        if rank == PRIMARY {
+            course = on_its_side(sinus::round(planter.ground, &course));
         }
         if planter.way(&course, rank) < WHOLE {
             let inside = planter.ground.inside(&curve::resampled(&course, planter.step));
@@ -259,13 +263,15 @@ impl LaidLines {
         self.lines.push(LaidLine { given, bounds, vein, course });
     }
 
-    /// Where a line that begins at `p` leaves; `None` where nothing was laid.
-    fn start(&self, p: DVec2) -> Option<Start<'_>> {
+    /// Where a line that begins at `p` leaves, on a blade of this length; `None` where nothing was laid.
+    fn start(&self, p: DVec2, length: f64) -> Option<Start<'_>> {
         let mut best: Option<(f64, &LaidLine)> = None;
         for line in &self.lines {
             let most = best.map_or(f64::INFINITY, |(d2, _)| d2);
+            // One that leaves the same place is no parent.
+            let beside = best.is_some() && line.given[0].distance(p) < 4.0 * length / ROUNDING;
             let outside = p.clamp(line.bounds.min, line.bounds.max).distance_squared(p);
-            if outside < most {
+            if outside < most && !beside {
                 let Some((foot, _)) = curve::nearest(&line.given, p) else { continue };
                 let d2 = foot.distance_squared(p);
                 if d2 < most {

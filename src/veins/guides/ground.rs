@@ -1,11 +1,13 @@
 //! The blade on which guides are laid: how far the margin is, which way it runs, where the middle is.
 
+use std::cell::OnceCell;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use glam::DVec2;
 
 use super::curve;
+use crate::geometry::geodesic::Geodesics;
 use crate::geometry::polygon;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -33,6 +35,8 @@ pub(super) struct Ground<'a> {
     even: Vec<DVec2>,
     root: DVec2,
     inset: f64,
+    /// Made when it is asked for.
+    geodesics: OnceCell<Geodesics>,
 }
 
 impl<'a> Ground<'a> {
@@ -42,7 +46,8 @@ impl<'a> Ground<'a> {
         let segments: Vec<_> = polygon::edges(margin.outline()).chain(cuts).collect();
         let dense = polygon::resampled(margin.outline(), margin.length_mm() / 100.0);
         let even = super::targets::evened(&dense, 3.0);
-        Self { margin, lines: SegmentIndex::new(segments.clone()), segments, even, root, inset }
+        let lines = SegmentIndex::new(segments.clone());
+        Self { margin, lines, segments, even, root, inset, geodesics: OnceCell::new() }
     }
 
     pub(super) fn margin(&self) -> &Margin {
@@ -95,6 +100,38 @@ impl<'a> Ground<'a> {
         };
         let (first, rest) = line.split_at(1);
         first.iter().copied().chain(rest.iter().map(moved)).collect()
+    }
+
+    /// How far inside the margin a point lies, `most` if that is farther; below 0 outside.
+    pub(super) fn depth(&self, p: DVec2, most: f64) -> f64 {
+        let distance = |reach: f64| self.lines.nearest(p, reach).map(|(d2, _)| d2.sqrt());
+        if polygon::contains(self.margin.outline(), p) {
+            distance(most).map_or(most, |near| near.min(most))
+        } else {
+            -distance(f64::MAX.sqrt()).unwrap_or(0.0)
+        }
+    }
+
+    /// The point, or the nearest one that lies at least so far inside the margin here.
+    pub(super) fn off_margin(&self, p: DVec2, least: f64) -> DVec2 {
+        let out = !polygon::contains(self.margin.outline(), p);
+        let reach = if out { f64::MAX.sqrt() } else { least };
+        let Some((_, i)) = self.lines.nearest(p, reach) else { return p };
+        let (a, b) = self.segments[i];
+        let foot = polygon::nearest_on_segment(a, b, p);
+        let away = if out { foot - p } else { p - foot };
+        // Outlines run anticlockwise.
+        foot + away.normalize_or((b - a).perp().normalize_or_zero()) * least
+    }
+
+    /// How far guides keep from the margin.
+    pub(super) fn inset(&self) -> f64 {
+        self.inset
+    }
+
+    /// The shortest way between two points inside the margin; cuts do not stop it.
+    pub(super) fn shortest(&self, from: DVec2, to: DVec2) -> Option<Vec<DVec2>> {
+        self.geodesics.get_or_init(|| Geodesics::of(self.margin.outline())).way(from, to)
     }
 
     /// How far the margin or a cut is from `p` in a direction.

@@ -32,6 +32,7 @@ mod primary;
 mod rim;
 mod rows;
 mod secondary;
+mod sinus;
 mod targets;
 mod tertiary;
 #[cfg(test)]

@@ -18,6 +18,7 @@ use super::aside::{TIP, aside};
 use super::curve;
 use super::given::GivenSpec;
 use super::{GuideSpec, PrimaryType, planted};
+use crate::geometry::geodesic::Geodesics;
 use crate::growth::{GrowingBlade, GrowthSpec};
 use crate::margin::MarginError;
 use crate::margin::morph::{MarginSide, MorphPath};
@@ -122,9 +123,12 @@ impl CarriedGuides {
         spec: &mut VeinSpec,
     ) -> Result<(), MarginError> {
         let sides = path.sides(u)?;
-        let length = path.at(u)?.length_mm();
+        let margin = path.at(u)?;
+        let length = margin.length_mm();
         let least = LEAST_STEPS * spec.node_step_mm * spec.scale / length;
-        spec.guides.given = self.at(&unit(sides, length), share, least);
+        let outline: Vec<DVec2> = margin.outline().iter().map(|p| *p / length).collect();
+        let inside = Geodesics::of(&outline);
+        spec.guides.given = self.at(&unit(sides, length), &inside, share, least);
         if let Some(spacing) = self.fan_spacing_mm {
             let GuideSpec { primary, fork_spacing_mm, .. } = &mut spec.guides;
             (*primary, *fork_spacing_mm) = (PrimaryType::Flabellate, spacing);
@@ -132,9 +136,9 @@ impl CarriedGuides {
         Ok(())
     }
 
-    fn at(&self, sides: &Sides, share: f64, least: f64) -> GivenSpec {
+    fn at(&self, sides: &Sides, inside: &Geodesics, share: f64, least: f64) -> GivenSpec {
         let (done, from) = (vec![Progress::Open; self.veins.len()], vec![None; self.veins.len()]);
-        let mut lines = Lines { guides: self, sides, share, least, done, from };
+        let mut lines = Lines { guides: self, sides, inside, share, least, done, from };
         let mut given = GivenSpec::default();
         for &i in &self.order {
             let line = lines.line(i);
@@ -240,6 +244,7 @@ enum Progress {
 struct Lines<'a> {
     guides: &'a CarriedGuides,
     sides: &'a Sides,
+    inside: &'a Geodesics,
     share: f64,
     /// Main veins are no shorter.
     least: f64,
@@ -255,7 +260,8 @@ impl Lines<'_> {
         }
         self.done[i] = Progress::Asked;
         let vein = &self.guides.veins[i];
-        let between = Between { of: &vein.of, share: self.share, sides: self.sides };
+        let between =
+            Between { of: &vein.of, share: self.share, sides: self.sides, inside: self.inside };
         let mut share = 0.0;
         let from = match vein.parent {
             Some(parent) => {
@@ -302,7 +308,12 @@ impl Lines<'_> {
         }
         let veins = &self.guides.veins;
         let mixed = |j: usize| {
-            let between = Between { of: &veins[j].of, share: self.share, sides: self.sides };
+            let between = Between {
+                of: &veins[j].of,
+                share: self.share,
+                sides: self.sides,
+                inside: self.inside,
+            };
             between.from()
         };
         let own = mixed(i);

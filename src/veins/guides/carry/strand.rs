@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::super::curve;
 use super::laid::Laid;
+use crate::geometry::geodesic::Geodesics;
 use crate::margin::morph::MarginSide;
 use crate::veins::graph::VeinKind;
 
@@ -87,11 +88,17 @@ impl Strand {
     }
 }
 
+/// An end that moves by no more of its side of the margin follows that. One that goes from lobe to lobe
+/// would run round them, far faster than anything else moves; it takes the shortest way inside the blade.
+const ALONG: f64 = 0.1;
+
 /// A vein between that of the first leaf and that of the last, as `share` of the last.
 pub(super) struct Between<'a> {
     pub(super) of: &'a [Strand; 2],
     pub(super) share: f64,
     pub(super) sides: &'a Sides,
+    /// What lies inside the blade.
+    pub(super) inside: &'a Geodesics,
 }
 
 impl Between<'_> {
@@ -141,12 +148,14 @@ impl Between<'_> {
 
     fn end(&self, from: DVec2, met: [Option<DVec2>; 2]) -> DVec2 {
         let [a, b] = self.of;
-        if met == [None, None] && a.left == b.left && (a.measure - b.measure).abs() < std::env::var("TH").unwrap().parse::<f64>().unwrap() {
+        if met == [None, None] && a.left == b.left && (a.measure - b.measure).abs() < ALONG {
             let at = self.sides[usize::from(a.left)].at(self.mix(|strand| strand.measure));
             return from + a.to.lerp(b.to, self.share).rotate(at - from);
         }
         let [first, last] =
             [0, 1].map(|k| met[k].unwrap_or_else(|| self.of[k].end(from, self.sides)));
-        first.lerp(last, self.share)
+        // No straight way: it may lead over a sinus.
+        let way = self.inside.way(first, last);
+        way.map_or(first.lerp(last, self.share), |way| curve::at(&way, self.share).0)
     }
 }

@@ -356,6 +356,51 @@ fn presets_of_every_kind_turn_into_each_other() {
     presets_turn_into_each_other(&[1, 7], 3);
 }
 
+/// How far the margin moves at most between two of so many frames, in lengths of the blade.
+fn farthest_step(from: &str, to: &str, frames: u32) -> f64 {
+    let station = |name| {
+        let margin = document(name, &[]).resolve(Seed(1)).expect("it resolves").margin;
+        Station { margin, weight: 1.0 }
+    };
+    let path = MorphPath::new(&[station(from), station(to)], Seed(1)).expect("a path");
+    let outline = |frame| {
+        let margin = path.at(f64::from(frame) / f64::from(frames - 1)).expect("a margin");
+        let unit = margin.outline().iter().map(|p| *p / margin.length_mm());
+        unit.collect::<Vec<DVec2>>()
+    };
+    let outlines: Vec<_> = (0..frames).map(outline).collect();
+    let apart = |a: &[DVec2], b: &[DVec2]| {
+        venation::geometry::deviation::to_polygon(a, b).into_iter().fold(0.0, f64::max)
+    };
+    let steps = outlines.windows(2).map(|w| apart(&w[0], &w[1]).max(apart(&w[1], &w[0])));
+    steps.fold(0.0, f64::max)
+}
+
+/// The waists of ivy's lobes lie below its valleys, those of a maple's above: number by number they would
+/// begin to count all at once on the way.
+#[test]
+fn margins_do_not_leap_where_waists_begin_to_count() {
+    for (from, to) in [("ivy", "maple"), ("maple", "ivy"), ("oak", "maple"), ("beech", "willow")] {
+        let step = farthest_step(from, to, 60);
+        assert!(step < 0.03, "{from} to {to}: {step}");
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: run with --ignored"]
+fn margins_of_all_presets_do_not_leap() {
+    let names: Vec<&str> = venation::presets::PRESETS.iter().map(|preset| preset.name).collect();
+    let pairs = names.iter().flat_map(|from| names.iter().map(move |to| (from, to)));
+    let mut far = Vec::new();
+    for (from, to) in pairs.filter(|(from, to)| from != to) {
+        let step = farthest_step(from, to, 60);
+        if step >= 0.04 {
+            far.push(format!("{from} to {to}: {step:.3}"));
+        }
+    }
+    assert!(far.is_empty(), "{far:#?}");
+}
+
 #[test]
 #[ignore = "takes minutes: run with --ignored"]
 fn every_preset_turns_into_every_other() {

@@ -11,6 +11,7 @@
 //! exact, whatever they came from: landmarks, lobes or a polygon; and it needs no fit.
 
 mod flank;
+mod leaps;
 mod marks;
 mod numbers;
 mod repair;
@@ -190,7 +191,7 @@ impl MorphPath {
 /// How leaves are mixed.
 #[derive(Debug, Clone)]
 enum Way {
-    /// Number by number: they are parametric and of one structure.
+    /// Number by number: they are parametric and of one structure, and do not leap on the way.
     Numbers(Vec<MarginSpec>),
     /// As margins with marks that answer each other.
     Space { space: space::Space, ease: f64 },
@@ -207,11 +208,13 @@ impl Way {
     ) -> Result<Self, MarginError> {
         let tried = || (1..TRIED).map(|i| f64::from(i) / f64::from(TRIED));
         if let Some(leaves) = numbers::alike(specs)? {
-            let builds = |u: f64| {
+            let unit = MarginSpec { length_mm: 1.0, ..leaves[0].clone() };
+            let outline = |u: f64| {
                 let shares = nurbs::shares(weights, u);
-                super::entire(&numbers::mixed(&leaves, &shares, &leaves[0])).is_ok()
+                Some(super::entire(&numbers::mixed(&leaves, &shares, &unit)).ok()?.to_outline())
             };
-            if tried().all(builds) {
+            let places: Vec<f64> = [0.0].into_iter().chain(tried()).chain([1.0]).collect();
+            if !leaps::any(&places, outline) {
                 return Ok(Self::Numbers(leaves));
             }
         }

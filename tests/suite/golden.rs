@@ -27,7 +27,7 @@ fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(format!("{name}.png"))
 }
 
-fn read(path: &Path) -> Option<Picture> {
+pub(crate) fn read(path: &Path) -> Option<Picture> {
     let picture = image::open(path).ok()?.into_rgba8();
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let values = picture.pixels().map(|pixel| pixel.0).collect();

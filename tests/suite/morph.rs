@@ -12,7 +12,7 @@ use venation::spec::LeafSpec;
 use venation::veins::VeinKind;
 use venation::veins::guides::{self, PrimaryType, SecondaryType, carry::CarriedGuides};
 
-use crate::golden::{compare, document, panel, sheet};
+use crate::golden::{compare, document, panel, read, sheet};
 use crate::margins::shape;
 use crate::support::{fail, fresh, succeed};
 
@@ -324,6 +324,23 @@ fn golden_morphs_of_figures_7_5_to_7_11() {
         }
     }
     compare("readme_morph", &sheet("", &panels, N, 120));
+}
+
+#[test]
+fn golden_whole_leaves_of_a_morph() {
+    let folder = fresh();
+    let how = ["--veins", "--frames", "5", "--size", "300"];
+    let mut panels = Vec::new();
+    for (from, to) in [("ivy", "maple"), ("camphor", "ivy")] {
+        let out = format!("{from}-{to}");
+        succeed(folder.path(), &[&["morph", from, to, "-o", &out], &how[..]].concat());
+        for frame in 1..=5 {
+            let path = folder.path().join(format!("{out}/frame_{frame:04}/leaf.png"));
+            let label = if frame == 1 { format!("{from} to {to}") } else { String::new() };
+            panels.push(panel(read(&path).expect("a frame"), &label));
+        }
+    }
+    compare("readme_morph_veins", &sheet("", &panels, 5, 300));
 }
 
 /// Every preset's margin, with the seed it is drawn from.

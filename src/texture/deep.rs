@@ -2,8 +2,7 @@
 //!
 //! Heights and thickness always have them, and fine normals are made from heights anew. Colours and
 //! shares are painted as real numbers; where 16 bits are asked for they are kept so, beside the 8 bits
-//! that the preview and the cards take, on atlases and smaller levels too. Only what is made from 8 bits,
-//! enhanced colours, is widened (0–255 to 0–65535, ends on ends).
+//! that the preview and the cards take, on atlases and smaller levels too.
 
 use rayon::prelude::*;
 

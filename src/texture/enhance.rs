@@ -33,7 +33,10 @@ pub(super) fn steps(side: &SideMaps, per_mm: f32, seed: u32) -> Steps {
     let size = side.size();
     let grey = |grid: &Grid<f32>| grid.map(|&v| [v; 3]);
     // 7a: dark veins on white.
-    let veins = side.vein_mask.map(|&mask| f32::from(mask) / 255.0);
+    let veins = match &side.deep {
+        Some(deep) => deep.vein_mask.map(|&mask| f32::from(mask) / 65535.0),
+        None => side.vein_mask.map(|&mask| f32::from(mask) / 255.0),
+    };
     let plain = veins.map(|v| 1.0 - v);
     // 7b: thickened, with noise, smoothed.
     let reach = (THICKENED_MM * per_mm).round().clamp(1.0, 16.0) as usize;
@@ -62,8 +65,12 @@ pub(super) fn steps(side: &SideMaps, per_mm: f32, seed: u32) -> Steps {
     // 7d, 7e: inverted, then in the colours of a leaf, which keep their lightness in the mean.
     let inverted = embossed.map(|&v| 1.0 - v);
     let mut coloured = grey(&inverted);
-    for (texel, colour) in coloured.values_mut().iter_mut().zip(side.base_colour.values()) {
-        let [r, g, b, _] = colour.map(|byte| f32::from(byte) / 255.0);
+    let colour = |i: usize| match &side.deep {
+        Some(deep) => deep.base_colour.values()[i].map(|word| f32::from(word) / 65535.0),
+        None => side.base_colour.values()[i].map(|byte| f32::from(byte) / 255.0),
+    };
+    for (i, texel) in coloured.values_mut().iter_mut().enumerate() {
+        let [r, g, b, _] = colour(i);
         let light = texel[0] / 0.5;
         *texel = [r, g, b].map(|c| (c * (0.35 + 0.65 * light)).min(1.0));
     }
@@ -144,6 +151,25 @@ mod tests {
         point[(2, 2)] = 16.0;
         let spread = blurred(&point);
         assert_eq!((spread[(2, 2)], spread[(1, 2)], spread[(1, 1)]), (4.0, 2.0, 1.0));
+    }
+
+    #[test]
+    fn with_sixteen_bits_nothing_is_made_from_eight() {
+        let size = 8;
+        let maps = MapSet::ALL.deep();
+        let mut side = SideMaps::empty(size, maps);
+        side.base_colour.values_mut().fill([80, 120, 50, 255]);
+        let deep = side.deep.as_mut().expect("16 bits");
+        // Between two steps of 8 bits.
+        deep.base_colour.values_mut().fill([80 * 257 + 100, 120 * 257, 50 * 257, u16::MAX]);
+        let [.., coloured, _] = steps(&side, 12.0, 1);
+        side.deep.as_mut().expect("16 bits").base_colour.values_mut().fill([80 * 257; 4]);
+        let [.., other, _] = steps(&side, 12.0, 1);
+        assert!(coloured[(3, 3)][0] > other[(3, 3)][0]);
+        // A vein of less than a step of 8 bits shows.
+        side.deep.as_mut().expect("16 bits").vein_mask.values_mut().fill(100);
+        let [plain, ..] = steps(&side, 12.0, 1);
+        assert!(plain[(3, 3)][0] < 1.0);
     }
 
     #[test]

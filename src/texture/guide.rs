@@ -80,13 +80,16 @@ pub(super) struct Guide {
 #[derive(Debug)]
 pub(super) struct Reach<'a> {
     pub vein_spread: f64,
+    /// Whether fine veins spread less colour than large ones.
+    pub faint_veins: bool,
     pub speckles: &'a [DVec2],
     pub speckle_mm: f64,
 }
 
 impl Reach<'_> {
     /// Nothing spreads.
-    pub(super) const NONE: Self = Self { vein_spread: 0.0, speckles: &[], speckle_mm: 0.0 };
+    pub(super) const NONE: Self =
+        Self { vein_spread: 0.0, faint_veins: false, speckles: &[], speckle_mm: 0.0 };
 }
 
 impl Guide {
@@ -127,13 +130,19 @@ impl Guide {
             side: coarse.side,
             major: coarse.distances(&major, &spans),
             speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
-            from_wide: coarse.vein_weights(venation, reach.vein_spread, wide..f32::INFINITY),
+            from_wide: coarse.vein_weights(
+                venation,
+                reach.vein_spread,
+                reach.faint_veins,
+                wide..f32::INFINITY,
+            ),
             edge,
             spans,
         };
         let fine_spans = smooth.spans_at(side);
         let distances = lattice.distances(&veins, &fine_spans);
-        let from_narrow = lattice.vein_weights(venation, reach.vein_spread, 0.0..WIDE_NODES);
+        let from_narrow =
+            lattice.vein_weights(venation, reach.vein_spread, reach.faint_veins, 0.0..WIDE_NODES);
         let fine = distances.into_iter().zip(from_narrow).map(|(vein, narrow)| [vein, narrow]);
         let even = coarse.spacing() <= NOISE_NODES_MM;
         let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);

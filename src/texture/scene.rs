@@ -16,7 +16,7 @@ use super::guide::{Guide, Lattice, NODES_OF_WOUNDS, Reach};
 use super::map::{MapKind, MapSet};
 use super::optics::Optics;
 use super::petiole::Stalk;
-use super::pigment::{Course, Pigments};
+use super::pigment::{ColourType, Course, Pigments};
 use super::relief::Relief;
 use super::side::SideMaps;
 use super::spans::Spans;
@@ -100,6 +100,8 @@ impl Scene {
         let speckles = speckles(paint, margin, seed);
         let reach = Reach {
             vein_spread: paint.colour.vein_spread,
+            // Else a net leaves nothing of the first colour.
+            faint_veins: paint.colour.r#type == ColourType::FromVeins,
             speckles: &speckles,
             speckle_mm: paint.colour.spread_mm,
         };

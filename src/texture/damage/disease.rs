@@ -8,6 +8,12 @@ use crate::geometry::polygon;
 use crate::texture::tissue::smooth;
 use crate::units::Angle;
 
+/// The pale halo of a spot, in its radii.
+const HALO: f32 = 0.8;
+
+/// A miner that likes no way better than this goes no farther.
+const TRAPPED: f32 = 2.4;
+
 impl Blade<'_> {
     /// Kills tissue from the margin and the tip inwards, first between the veins.
     pub(super) fn scorch(&mut self, strength: f64) {
@@ -35,7 +41,7 @@ impl Blade<'_> {
         }
     }
 
-    /// Brown spots with a dark rim and a pale halo.
+    /// Brown spots with a dark rim and a narrow pale halo.
     pub(super) fn spots(&mut self, count: usize) {
         for _ in 0..count {
             let start = self.dart();
@@ -55,7 +61,7 @@ impl Blade<'_> {
                 let depth = r - to.length();
                 let wound = &mut self.nodes[node];
                 wound[SPOT] = wound[SPOT].max(depth);
-                wound[PALE] = wound[PALE].max(0.4 * smooth(-1.6 * r, 0.0, depth));
+                wound[PALE] = wound[PALE].max(0.3 * smooth(-HALO * r, 0.0, depth));
             }
         }
     }
@@ -74,27 +80,45 @@ impl Blade<'_> {
             let widest = self.breadth * self.uniform(0.008, 0.014);
             let step = (0.5 * widest).max(self.lattice.spacing() as f32);
             let steps = (length / step) as usize;
+            let mut way = vec![p];
             for i in 0..steps {
                 let half = widest * (0.15 + 0.85 * i as f32 / steps as f32);
-                let node = self.node_at(p);
-                let place = self.place(node);
-                if place.edge < 0.2 {
+                if self.place(self.node_at(p)).edge < 0.2 {
                     break;
                 }
-                // It winds, and turns from larger veins and from the margin.
-                bend = 0.8 * bend + self.uniform(-0.16, 0.16);
-                let near = (2.2 * half / place.major.max(0.3)).min(1.0);
-                let rim = (2.0 * half / place.edge.max(0.3)).min(1.0);
-                let away = self.downhill(node) * f64::from(0.9 * near * near);
-                let inward = -p.normalize_or_zero() + DVec2::Y * 0.4;
-                heading = (heading + heading.perp() * f64::from(bend) - away
-                    + inward * f64::from(0.8 * rim * rim))
-                .normalize_or(heading);
+                bend = 0.9 * bend + self.uniform(-0.07, 0.07);
+                // What it has eaten already is empty: a piece back along its way it goes no more.
+                let behind = way.len().saturating_sub((8.0 * widest / step) as usize);
+                let ahead = f64::from(4.0 * half + step);
+                let turned = (-6..=6).map(|k| 0.11 * k as f32).map(|turn| {
+                    let towards = DVec2::from_angle(f64::from(bend + turn)).rotate(heading);
+                    let cost = self.unease(p + towards * ahead, half, &way[..behind]);
+                    (cost + 1.5 * turn * turn, towards)
+                });
+                let (cost, towards) = turned
+                    .reduce(|a, b| if b.0 < a.0 { b } else { a })
+                    .expect("there are thirteen");
+                if cost > TRAPPED {
+                    break;
+                }
+                heading = towards;
                 let next = p + heading * f64::from(step);
                 self.gallery(p, next, half);
                 p = next;
+                way.push(p);
             }
         }
+    }
+
+    /// How little a miner of this half width likes a place: for the larger veins, for the margin, for the
+    /// gallery it has eaten.
+    fn unease(&self, p: DVec2, half: f32, eaten: &[DVec2]) -> f32 {
+        let place = self.place(self.node_at(p));
+        let near = |distance: f32, enough: f32| (1.0 - distance / (enough * half)).clamp(0.0, 1.5);
+        let own = eaten.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
+        1.2 * near(place.major, 2.5).powi(2)
+            + 2.0 * near(place.edge, 4.0)
+            + 3.0 * near(own.sqrt() as f32, 5.0)
     }
 
     fn gallery(&mut self, a: DVec2, b: DVec2, half: f32) {

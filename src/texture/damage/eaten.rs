@@ -10,6 +10,9 @@ use crate::geometry::polygon;
 const FROM_MAJOR_MM: f32 = 0.4;
 const FROM_PRIMARY_MM: f32 = 0.9;
 
+/// Farther from the base than this (lengths of the blade) primary veins are eaten with the rest.
+const TENDER: f64 = 0.72;
+
 impl Blade<'_> {
     /// Eats holes that stop at the larger veins.
     pub(super) fn holes(&mut self, share: f64) {
@@ -81,10 +84,17 @@ impl Blade<'_> {
                 let gnawed = 0.10 * noise::gradient(to.x / 0.8, to.y / 0.8, salt);
                 let arc =
                     radius * (1.0 + 0.08 * noise::gradient(to.x / radius, to.y / radius, salt ^ 3));
-                (arc - to.length() + gnawed).min(blade.primary[node] - FROM_PRIMARY_MM)
+                let spared = blade.primary[node] - FROM_PRIMARY_MM;
+                let within = if blade.is_tender(node) { f32::MAX } else { spared };
+                (arc - to.length() + gnawed).min(within)
             };
             blade.patch(blade.node_at(on_margin), depth, 400_000)
         });
+    }
+
+    /// Whether a node lies so far out that primary veins there are no harder than the tissue.
+    fn is_tender(&self, node: usize) -> bool {
+        self.at(node).length() > TENDER * self.margin.length_mm()
     }
 
     /// Tears the blade from the margin towards a primary vein, between the secondaries.

@@ -12,6 +12,9 @@ use crate::texture::pen::{Axis, BLOCK, Pen, block};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 
+/// Where fine veins are faint, from this radius on (mm) a vein's colour is full: that of a tertiary.
+const FULL_MM: f64 = 0.09;
+
 /// Where "far away" ends (mm), for leaves without the thing that a distance is to.
 const FAR_MM: f32 = 1e4;
 
@@ -134,11 +137,13 @@ impl Lattice<'_> {
         distances
     }
 
-    /// The largest w = 1 − distance / (spread × width) over the veins whose colour reaches so far (nodes).
+    /// The largest w = h (1 − distance / (spread × width)) over the veins whose colour reaches so far
+    /// (nodes). The height h is 1; where fine veins are `faint`, it falls with the width.
     pub(super) fn vein_weights(
         &self,
         venation: &Venation,
         spread: f64,
+        faint: bool,
         far: Range<f32>,
     ) -> Vec<f32> {
         if spread <= 0.0 || far.is_empty() {
@@ -150,14 +155,18 @@ impl Lattice<'_> {
             self.frame.pixel_from_leaf(p, self.side).as_vec2()
         };
         let reach = |node: u32| 2.0 * spread * venation.radii()[node as usize] * per_mm;
-        let cone = |(a, b): (u32, u32)| Capsule {
-            a: position(a),
-            b: position(b),
-            radius_a: reach(a).min(reach(b) * BRANCH_FLARE) as f32,
-            radius_b: reach(b) as f32,
+        let cone = |(a, b): (u32, u32)| {
+            let capsule = Capsule {
+                a: position(a),
+                b: position(b),
+                radius_a: reach(a).min(reach(b) * BRANCH_FLARE) as f32,
+                radius_b: reach(b) as f32,
+            };
+            let width = venation.radii()[b as usize] / FULL_MM;
+            (capsule, if faint { (width * width).min(1.0) as f32 } else { 1.0 })
         };
         let cones = coarse_edges(venation, spread).into_iter().map(cone);
-        self.weights(cones.filter(|cone| far.contains(&cone.widest())).collect())
+        self.weights(cones.filter(|(cone, _)| far.contains(&cone.widest())).collect())
     }
 
     /// The largest w = 1 − distance / reach over all speckles.
@@ -168,20 +177,20 @@ impl Lattice<'_> {
         }
         let cone = |&speckle: &DVec2| {
             let a = self.frame.pixel_from_leaf(speckle, self.side).as_vec2();
-            Capsule { a, b: a, radius_a: reach, radius_b: reach }
+            (Capsule { a, b: a, radius_a: reach, radius_b: reach }, 1.0)
         };
         self.weights(speckles.iter().map(cone).collect())
     }
 
-    fn weights(&self, cones: Vec<Capsule>) -> Vec<f32> {
+    fn weights(&self, cones: Vec<(Capsule, f32)>) -> Vec<f32> {
         pulp::Arch::new().dispatch(Cones { side: self.side, cones })
     }
 }
 
-/// Cones over the nodes, 1 on the axis of a capsule and 0 at its radius; the highest counts.
+/// Cones over the nodes, of their height on the axis of a capsule and 0 at its radius; the highest counts.
 struct Cones {
     side: usize,
-    cones: Vec<Capsule>,
+    cones: Vec<(Capsule, f32)>,
 }
 
 impl pulp::WithSimd for Cones {
@@ -191,7 +200,7 @@ impl pulp::WithSimd for Cones {
     fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<f32> {
         let side = self.side;
         let mut weights = vec![0.0_f32; side * side + BLOCK];
-        for cone in &self.cones {
+        for (cone, height) in &self.cones {
             let [columns, rows] = cone.pixels(cone.widest(), side, 0..side);
             let pen = Pen::new(cone, cone.widest());
             for y in rows {
@@ -202,7 +211,7 @@ impl pulp::WithSimd for Cones {
                     let nodes = &mut weights[y * side + x..][..BLOCK];
                     let mut highest = block(nodes);
                     for i in 0..BLOCK {
-                        let own = 1.0 - distance2[i].sqrt() / radius[i].max(1e-6);
+                        let own = height * (1.0 - distance2[i].sqrt() / radius[i].max(1e-6));
                         // A block may run over into the next row, where it has no business.
                         let higher = (own > highest[i]) & (x + i < side);
                         highest[i] = if higher { own } else { highest[i] };

@@ -217,14 +217,16 @@ impl<'a> Ground<'a> {
         let size = (bounds.size() / cell).ceil().as_usizevec2() + glam::USizeVec2::ONE;
         let place =
             |i: usize| bounds.min + DVec2::new((i % size.x) as f64, (i / size.x) as f64) * cell;
-        // What a step costs: dear near the margin, dearer still outside.
+        // What a step costs: dear near the margin, dearer still outside. A cut is gone round, no farther off
+        // than need be.
+        let rim = SegmentIndex::of_polygon(self.margin.outline());
         let cost: Vec<Option<f64>> = (0..size.x * size.y)
             .map(|i| {
                 let p = place(i);
                 if !polygon::contains(self.margin.outline(), p) {
                     return None;
                 }
-                let d = self.lines.nearest(p, f64::MAX.sqrt()).map_or(0.0, |(d2, _)| d2.sqrt());
+                let d = rim.nearest(p, f64::MAX.sqrt()).map_or(0.0, |(d2, _)| d2.sqrt());
                 let width = d / (0.1 * self.length());
                 Some(1.0 + 1.0 / (width * width + 0.01))
             })

@@ -25,6 +25,7 @@ use venation::veins::metrics::hierarchy::Hierarchy;
 use super::leaf_args::{self, LeafArgs};
 use super::{Context, Failure, seeds};
 use cases::{By, Case};
+use trails::Seen;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -85,6 +86,8 @@ struct Cell {
     metrics: VeinMetrics,
     hierarchy: Option<Hierarchy>,
     panel: Option<Panel>,
+    /// Its veins as lines, for a second row.
+    lines: Option<Panel>,
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -203,9 +206,14 @@ fn cell(document: &Document, case: Case, seed: u64, shown: bool) -> Result<Cell,
     let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
     let metrics = VeinMetrics::of(&grown.venation, &grown.margin);
     let hierarchy = Hierarchy::of(&grown.venation, &grown.margin);
-    let mut cell = Cell { case, seed, metrics, hierarchy, panel: None };
+    let mut cell = Cell { case, seed, metrics, hierarchy, panel: None, lines: None };
     if shown {
-        cell.panel = Some(panel(&cell, &spec, &grown)?);
+        let panel = panel(&cell, &spec, &grown)?;
+        if matches!(case, Case::Growth(_) | Case::Algorithm(_) | Case::Emergence(_)) {
+            let picture = trails::picture(&grown, panel.picture.width().min(PANEL_PX), Seen::Below);
+            cell.lines = Some(Panel { picture, label: String::new(), notes: Vec::new() });
+        }
+        cell.panel = Some(panel);
     }
     Ok(cell)
 }
@@ -218,7 +226,7 @@ fn panel(cell: &Cell, spec: &LeafSpec, grown: &Grown) -> Result<Panel, Failure> 
     if let Case::Scatter(..) = case {
         let side = (spec.texture.size_px as usize).min(LINES_PX);
         let notes = vec![format!("{} particles", grown.venation.sources())];
-        return Ok(Panel { picture: trails::picture(grown, side), label, notes });
+        return Ok(Panel { picture: trails::picture(grown, side, Seen::Above), label, notes });
     }
     let textures = pipeline::paint(spec, grown, Seed(seed), &mut Silent)?;
     if case == Case::Seed {
@@ -251,7 +259,8 @@ fn panel(cell: &Cell, spec: &LeafSpec, grown: &Grown) -> Result<Panel, Failure> 
 }
 
 fn sheet(title: &str, by: By, cells: &mut [Cell]) -> Result<Vec<u8>, Failure> {
-    let panels: Vec<Panel> = cells.iter_mut().filter_map(|cell| cell.panel.take()).collect();
+    let mut panels: Vec<Panel> = cells.iter_mut().filter_map(|cell| cell.panel.take()).collect();
+    panels.extend(cells.iter_mut().filter_map(|cell| cell.lines.take()));
     let Some(first) = panels.first() else {
         return Err(Failure::Unexpected("nothing to show".into()));
     };

@@ -1,4 +1,4 @@
-//! A vein pattern as lines, the darker and wider the more flows in them: the pictures of Rodkaew et
+//! A vein pattern as lines, the darker and wider the more flows in them, as in the pictures of Rodkaew et
 //! al. 2002.
 
 use venation::geometry::DVec2;
@@ -19,10 +19,17 @@ const THINNEST: f64 = 0.7;
 /// The widest line, in sides of the picture.
 const WIDEST: f64 = 1.0 / 90.0;
 
+/// From where a leaf is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Seen {
+    Above,
+    Below,
+}
+
 /// A square picture of the veins in their margin.
-pub(super) fn picture(grown: &Grown, side: usize) -> Grid<Rgba> {
+pub(super) fn picture(grown: &Grown, side: usize, seen: Seen) -> Grid<Rgba> {
     let mut canvas = Canvas::new(side, side, PAPER);
-    let pixel_from_leaf = fitted(&grown.margin, side as f64);
+    let pixel_from_leaf = fitted(&grown.margin, side as f64, seen);
     let mut outline: Vec<DVec2> =
         grown.margin.outline().iter().map(|p| pixel_from_leaf(*p)).collect();
     outline.push(outline[0]);
@@ -35,12 +42,15 @@ pub(super) fn picture(grown: &Grown, side: usize) -> Grid<Rgba> {
         if widest > finest { (radii[node as usize] - finest) / (widest - finest) } else { 0.0 }
     };
     // The darker over the lighter.
-    let shade = |node: u32| (share(node) * f64::from(SHADES)).round() as u32;
-    let mut edges: Vec<(u32, u32)> = graph.edges().collect();
-    edges.sort_by_key(|&(_, node)| (shade(node), node));
-    for (parent, node) in edges {
-        let ends = [parent, node].map(|id| pixel_from_leaf(graph.positions()[id as usize]));
-        let part = f64::from(shade(node)) / f64::from(SHADES);
+    let shade = |share: f64| (share * f64::from(SHADES)).round() as u32;
+    let grown = graph.edges().map(|(parent, node)| (shade(share(node)), node, parent));
+    // Where veins meet the finer one ends.
+    let met = graph.joins().iter().map(|&(a, b)| (shade(share(a).min(share(b))), a, b));
+    let mut lines: Vec<(u32, u32, u32)> = grown.chain(met).collect();
+    lines.sort_unstable();
+    for (shade, node, other) in lines {
+        let ends = [other, node].map(|id| pixel_from_leaf(graph.positions()[id as usize]));
+        let part = f64::from(shade) / f64::from(SHADES);
         let width = THINNEST + part * (side as f64 * WIDEST - THINNEST).max(0.0);
         canvas.stroke(&ends, width, ink(part));
     }
@@ -54,9 +64,10 @@ fn ink(part: f64) -> Rgba {
 }
 
 /// Pixels from leaf space: the blade in the middle, with a little room around.
-fn fitted(margin: &Margin, side: f64) -> impl Fn(DVec2) -> DVec2 {
+fn fitted(margin: &Margin, side: f64, seen: Seen) -> impl Fn(DVec2) -> DVec2 {
     let bounds = margin.bounds();
     let scale = 0.94 * side / bounds.size().max_element();
     let middle = (bounds.min + bounds.max) / 2.0;
-    move |p| DVec2::splat(side / 2.0) + (p - middle) * DVec2::new(scale, -scale)
+    let mirror = if seen == Seen::Below { -1.0 } else { 1.0 };
+    move |p| DVec2::splat(side / 2.0) + (p - middle) * DVec2::new(mirror * scale, -scale)
 }

@@ -15,10 +15,11 @@ const LARGEST_PX: usize = 1024;
 /// Towards the sun: from the upper left, low enough for relief to show.
 const SUN: [f32; 3] = [-0.53, 0.53, 0.66];
 
-/// Light of the sun and of the sky on a plain white surface, and from behind.
+/// Light of the sun and of the sky on a plain white surface, and from behind: there one looks into the light, as
+/// bright as a camera takes it that is set for the leaf.
 const SUN_LIGHT: f32 = 1.05;
 const SKY_LIGHT: f32 = 0.32;
-const BEHIND: f32 = 1.5;
+const BEHIND: f32 = 3.2;
 
 /// Reflectance of a leaf's surface at right angles.
 const F0: f32 = 0.037;
@@ -85,7 +86,7 @@ impl View {
                 let through = maps.translucency.values()[at].map(|b| linear[usize::from(b)]);
                 let facing = 0.75 + 0.25 * normal[2];
                 std::array::from_fn(|c| {
-                    through[c] * BEHIND * facing + colour[c] * 0.5 * SKY_LIGHT * open
+                    through[c] * BEHIND * facing + colour[c] * SKY_LIGHT * open
                 })
             }
         };

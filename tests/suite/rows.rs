@@ -51,7 +51,7 @@ fn the_veins_of_a_grass_stand_evenly_from_side_to_side() {
 /// by the same reader; those two rows are the two that may be missed.
 #[test]
 #[ignore = "takes minutes: run with --ignored"]
-fn ten_netted_presets_and_more_lie_in_eighteen_rows() {
+fn netted_presets_lie_in_eighteen_rows() {
     let names = [
         "beech",
         "birch",
@@ -67,11 +67,19 @@ fn ten_netted_presets_and_more_lie_in_eighteen_rows() {
         "oak",
         "maple",
         "tulip-tree",
+        "linden",
+        "camphor",
+        "ivy",
     ];
+    let mut short = Vec::new();
     for name in names {
         let mut inside: Vec<usize> =
             (1..=10).into_par_iter().map(|seed| measured(name, seed).rows_inside()).collect();
         inside.sort_unstable();
-        assert!(inside[4] + inside[5] >= 36, "{name} {inside:?}");
+        println!("{name} {inside:?}");
+        if inside[4] + inside[5] < 36 {
+            short.push((name, inside));
+        }
     }
+    assert!(short.is_empty(), "{short:?}");
 }

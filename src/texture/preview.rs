@@ -85,9 +85,7 @@ impl View {
             Self::Against => {
                 let through = maps.translucency.values()[at].map(|b| linear[usize::from(b)]);
                 let facing = 0.75 + 0.25 * normal[2];
-                std::array::from_fn(|c| {
-                    through[c] * BEHIND * facing + colour[c] * SKY_LIGHT * open
-                })
+                std::array::from_fn(|c| through[c] * BEHIND * facing + colour[c] * SKY_LIGHT * open)
             }
         };
         let share = f32::from(alpha) / 255.0;

@@ -75,6 +75,10 @@ pub(crate) struct Args {
     force: bool,
 }
 
+/// A fit that strays farther than this (lengths of the primary vein) is told to be poor; of sixty scanned
+/// leaves none does.
+const POOR: f64 = 0.1;
+
 /// A leaf fitted.
 struct Fitted {
     path: PathBuf,
@@ -202,15 +206,16 @@ impl Args {
         }
         let real = imported.margin().map_err(|error| told(&error))?;
         let fit = fit::fit(&real).map_err(|error| told(&error))?;
-        Ok(Fitted {
-            path: path.to_owned(),
-            name: name_of(path),
-            real,
-            fit,
-            base: imported.base,
-            apex: imported.apex,
-            notes: imported.notes,
-        })
+        let mut notes = imported.notes;
+        if fit.worst() > POOR {
+            notes.push(format!(
+                "the fit strays {:.2} lengths of the primary vein: is the outline torn, is base or apex \
+                 another (--root)? `generate --outline` takes it as it is",
+                fit.worst()
+            ));
+        }
+        let (path, name) = (path.to_owned(), name_of(path));
+        Ok(Fitted { path, name, real, fit, base: imported.base, apex: imported.apex, notes })
     }
 }
 

@@ -38,28 +38,39 @@ impl Geodesics {
     /// only where the polygon is none. O(n).
     #[must_use]
     pub fn way(&self, from: DVec2, to: DVec2) -> Option<Vec<DVec2>> {
-        let ((from, first), (to, last)) = (self.place(from)?, self.place(to)?);
-        Some(funnel(from, to, &self.doors(first, last)?))
+        let ((from, starts), (to, ends)) = (self.place(from)?, self.place(to)?);
+        // An end on a door needs not go through it: of the triangles around, the nearest.
+        let between = starts.iter().flat_map(|&start| ends.iter().map(move |&end| (start, end)));
+        let doors = between.filter_map(|(start, end)| self.doors(start, end));
+        Some(funnel(from, to, &doors.min_by_key(Vec::len)?))
     }
 
     fn corner(&self, t: u32, k: usize) -> DVec2 {
         self.corners[self.triangles[t as usize][k % 3] as usize]
     }
 
-    /// The place nearest to `p`, and a triangle it is of.
-    fn place(&self, p: DVec2) -> Option<(DVec2, u32)> {
-        let within =
-            |t: u32| (0..3).all(|k| cross(self.corner(t, k), self.corner(t, k + 1), p) >= 0.0);
+    /// The place nearest to `p`, and the triangles it is of; by rounding a point on a side can lie outside
+    /// both beside it.
+    fn place(&self, p: DVec2) -> Option<(DVec2, Vec<u32>)> {
+        let side = |t: u32, k: usize| (self.corner(t, k), self.corner(t, k + 1));
+        let within = |t: &u32| {
+            let has_area = cross(self.corner(*t, 0), self.corner(*t, 1), self.corner(*t, 2)) > 0.0;
+            let is_left = |k: usize| {
+                let (a, b) = side(*t, k);
+                cross(a, b, p) >= -1e-12 * a.distance_squared(b)
+            };
+            has_area && (0..3).all(is_left)
+        };
         let triangles = 0..self.triangles.len() as u32;
-        if let Some(t) = triangles.clone().find(|&t| within(t)) {
-            return Some((p, t));
+        let around: Vec<u32> = triangles.clone().filter(within).collect();
+        if !around.is_empty() {
+            return Some((p, around));
         }
-        let feet = triangles.flat_map(|t| {
-            (0..3).map(move |k| {
-                (polygon::nearest_on_segment(self.corner(t, k), self.corner(t, k + 1), p), t)
-            })
-        });
-        feet.min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)))
+        let sides = triangles.flat_map(|t| (0..3).map(move |k| (side(t, k), t)));
+        let feet = sides.map(|((a, b), t)| (polygon::nearest_on_segment(a, b, p), t));
+        let nearest =
+            feet.min_by(|a, b| a.0.distance_squared(p).total_cmp(&b.0.distance_squared(p)));
+        nearest.map(|(foot, t)| (foot, vec![t]))
     }
 
     /// The sides between triangles on the way from one to another, each as its left and right corner.
@@ -130,7 +141,18 @@ fn funnel(from: DVec2, to: DVec2, doors: &[[DVec2; 2]]) -> Vec<DVec2> {
     }
     way.push(to);
     way.dedup();
+    // Where both ends lie on a door the way runs along it, and may go to its corner and back.
+    while let Some(i) = (1..way.len() - 1).find(|&i| turns_back(way[i - 1], way[i], way[i + 1])) {
+        way.remove(i);
+    }
     way
+}
+
+/// Whether a way goes back at `b` as it came.
+fn turns_back(a: DVec2, b: DVec2, c: DVec2) -> bool {
+    let (there, back) = (b - a, c - b);
+    let longer2 = there.length_squared().max(back.length_squared());
+    there.dot(back) < 0.0 && cross(a, b, c).abs() <= 1e-12 * longer2
 }
 
 #[cfg(test)]
@@ -153,6 +175,9 @@ mod tests {
         let mut places = vec![from, to];
         places.extend(polygon);
         let sees = |a: DVec2, b: DVec2| {
+            if polygon::edges(polygon).any(|edge| edge == (a, b) || edge == (b, a)) {
+                return true;
+            }
             let inside = (1..40).all(|k| {
                 let p = a.lerp(b, f64::from(k) / 40.0);
                 let on_it = polygon::edges(polygon)

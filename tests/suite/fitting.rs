@@ -11,7 +11,7 @@ use venation::raster::montage::Panel;
 use venation::seed::Seed;
 
 use crate::golden::{compare, sheet};
-use crate::support::{collection, fail, fresh, succeed};
+use crate::support::{collection, fail, fresh, run, succeed};
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/outlines").join(name)
@@ -84,6 +84,20 @@ fn a_fitted_leaf_is_a_file_and_a_picture_and_varies_with_the_seed() {
     assert!(vary.contains("--vary: 200 is not between 0 and 100"), "{vary}");
     let missing = fail(folder.path(), 2, &["fit", "nothing.png", "-o", "x.toml"]);
     assert!(missing.contains("nothing.png") && !folder.path().join("x.toml").exists(), "{missing}");
+}
+
+/// Insects have opened its outline, so that what is left is hardly a leaf's.
+#[test]
+fn a_poor_fit_says_so() {
+    let folder = fresh();
+    let torn = fixture("holes.png");
+    let (code, _, said) =
+        run(folder.path(), &["fit", torn.to_str().expect("a path"), "-o", "leaf.toml"]);
+    assert_eq!(code, 0);
+    assert!(said.contains("the fit strays 0.") && said.contains("--outline"), "{said}");
+    let whole = fixture(LEAVES[0]);
+    let (_, _, said) = run(folder.path(), &["fit", whole.to_str().expect("a path")]);
+    assert!(!said.contains("strays"), "{said}");
 }
 
 #[test]

@@ -141,18 +141,7 @@ fn funnel(from: DVec2, to: DVec2, doors: &[[DVec2; 2]]) -> Vec<DVec2> {
     }
     way.push(to);
     way.dedup();
-    // Where both ends lie on a door the way runs along it, and may go to its corner and back.
-    while let Some(i) = (1..way.len() - 1).find(|&i| turns_back(way[i - 1], way[i], way[i + 1])) {
-        way.remove(i);
-    }
     way
-}
-
-/// Whether a way goes back at `b` as it came.
-fn turns_back(a: DVec2, b: DVec2, c: DVec2) -> bool {
-    let (there, back) = (b - a, c - b);
-    let longer2 = there.length_squared().max(back.length_squared());
-    there.dot(back) < 0.0 && cross(a, b, c).abs() <= 1e-12 * longer2
 }
 
 #[cfg(test)]

@@ -11,9 +11,11 @@ use super::polygon::cross;
 #[must_use]
 pub fn with_holes(rings: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
     let corners: Vec<DVec2> = rings.iter().flatten().copied().collect();
-    let mut triangles = cut(rings);
-    triangles.retain(|t| area(&corners, t) > 0.0);
-    triangles
+    let turned = |[a, b, c]: [u32; 3]| {
+        let area = area(&corners, &[a, b, c]);
+        if area > 0.0 { Some([a, b, c]) } else { (area < 0.0).then_some([b, a, c]) }
+    };
+    cut(rings).into_iter().filter_map(turned).collect()
 }
 
 /// The same of one polygon, with the triangles that have no area: each side that is none of the polygon's is

@@ -130,19 +130,13 @@ impl Guide {
             side: coarse.side,
             major: coarse.distances(&major, &spans),
             speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
-            from_wide: coarse.vein_weights(
-                venation,
-                reach.vein_spread,
-                reach.faint_veins,
-                wide..f32::INFINITY,
-            ),
+            from_wide: coarse.vein_weights(venation, reach, wide..f32::INFINITY),
             edge,
             spans,
         };
         let fine_spans = smooth.spans_at(side);
         let distances = lattice.distances(&veins, &fine_spans);
-        let from_narrow =
-            lattice.vein_weights(venation, reach.vein_spread, reach.faint_veins, 0.0..WIDE_NODES);
+        let from_narrow = lattice.vein_weights(venation, reach, 0.0..WIDE_NODES);
         let fine = distances.into_iter().zip(from_narrow).map(|(vein, narrow)| [vein, narrow]);
         let even = coarse.spacing() <= NOISE_NODES_MM;
         let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);

@@ -95,9 +95,8 @@ impl Blade<'_> {
                     let cost = self.unease(p + towards * ahead, half, &way[..behind]);
                     (cost + 1.5 * turn * turn, towards)
                 });
-                let (cost, towards) = turned
-                    .reduce(|a, b| if b.0 < a.0 { b } else { a })
-                    .expect("there are thirteen");
+                let (cost, towards) =
+                    turned.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are thirteen");
                 if cost > TRAPPED {
                     break;
                 }

@@ -129,7 +129,7 @@ impl Blade<'_> {
     }
 
     /// The direction in which the larger veins come nearer.
-    pub(super) fn downhill(&self, node: usize) -> DVec2 {
+    fn downhill(&self, node: usize) -> DVec2 {
         let side = self.guide.side();
         let (x, y) = (node % side, node / side);
         if x == 0 || y == 0 || x + 1 == side || y + 1 == side {

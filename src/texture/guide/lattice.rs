@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
+use super::Reach;
 use crate::raster::coverage::Capsule;
 use crate::raster::distance::{Envelope, NearestByRows};
 use crate::texture::fields::BRANCH_FLARE;
@@ -138,14 +139,14 @@ impl Lattice<'_> {
     }
 
     /// The largest w = h (1 − distance / (spread × width)) over the veins whose colour reaches so far
-    /// (nodes). The height h is 1; where fine veins are `faint`, it falls with the width.
+    /// (nodes). The height h is 1; where fine veins are faint, it falls with the width.
     pub(super) fn vein_weights(
         &self,
         venation: &Venation,
-        spread: f64,
-        faint: bool,
+        reach: &Reach<'_>,
         far: Range<f32>,
     ) -> Vec<f32> {
+        let &Reach { vein_spread: spread, faint_veins, .. } = reach;
         if spread <= 0.0 || far.is_empty() {
             return vec![0.0; self.side * self.side];
         }
@@ -163,7 +164,7 @@ impl Lattice<'_> {
                 radius_b: reach(b) as f32,
             };
             let width = venation.radii()[b as usize] / FULL_MM;
-            (capsule, if faint { (width * width).min(1.0) as f32 } else { 1.0 })
+            (capsule, if faint_veins { (width * width).min(1.0) as f32 } else { 1.0 })
         };
         let cones = coarse_edges(venation, spread).into_iter().map(cone);
         self.weights(cones.filter(|(cone, _)| far.contains(&cone.widest())).collect())

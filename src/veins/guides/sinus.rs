@@ -32,7 +32,7 @@ const KEPT: f64 = 1.5;
 /// The line that keeps inside; the line itself where it is far enough from the margin, or where the blade has
 /// no way for it.
 pub(super) fn round(ground: &Ground<'_>, line: &[DVec2]) -> Vec<DVec2> {
-    let mut line = curve::resampled_to(line, POINTS);
+    let line = curve::resampled_to(line, POINTS);
     let (from, last) = (line[0], line.len() - 1);
     let end = ground.off_margin(line[last], LEAST * ground.length());
     let ended = curve::ended_at(&line, end);
@@ -49,10 +49,7 @@ pub(super) fn round(ground: &Ground<'_>, line: &[DVec2]) -> Vec<DVec2> {
             *p = ground.off_margin(*p, enough.min(KEPT * ground.inset()));
         }
     }
-    for (p, (own, other)) in line.iter_mut().zip(ended.iter().zip(way)) {
-        *p = own.lerp(other, turned);
-    }
-    line
+    ended.iter().zip(way).map(|(own, other)| own.lerp(other, turned)).collect()
 }
 
 /// How far a line keeps from the margin at its narrowest, in parts of what it should; below 0 outside.

@@ -34,7 +34,7 @@ use crate::veins::{Unreached, VeinSpec};
 const PATIENCE: f64 = 2.0;
 
 /// The veins that a source waits for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Tag {
     veins: [NodeId; SECTORS],
     last_step: u64,
@@ -83,16 +83,7 @@ impl Sources {
         }
     }
 
-    /// Whether a source sees its neighbour in a sixth.
-    fn sees(&mut self, i: usize, k: usize, node: NodeId, at: At<'_>) -> bool {
-        let sight = self.sight(&self.field.state(i).around, self.field.place(i), (k, node), at);
-        if sight.is_lasting {
-            self.field.state_mut(i).around.set_sight(k, sight.is_clear);
-        }
-        sight.is_clear
-    }
-
-    /// The same of a source at `p` with these neighbours.
+    /// Whether a source at `p` sees its neighbour in a sixth.
     fn sight(&self, around: &Around, p: DVec2, (k, node): (usize, NodeId), at: At<'_>) -> Sight {
         if self.convex {
             return Sight { is_clear: true, is_lasting: false };

@@ -146,6 +146,9 @@ pub fn grow(
             Some(closed) => closed,
             None => &mut open,
         };
+        if supply.is_due(step, age) || blade.deforms() || blade.is_warped() {
+            nodes.follow();
+        }
         // Seed new sources where the blade has room.
         supply.seed(step, age, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.

@@ -1,6 +1,7 @@
 //! Where auxin sources come from: darts that fall where there is room, or given places.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::callers::Callers;
 use super::habit::{self, Density};
@@ -117,6 +118,14 @@ impl<'a> Supply<'a> {
         self.waiting.push((self.blade.birth_step(p).unwrap_or(u64::MAX), p));
     }
 
+    /// Whether sources may come in this step.
+    pub(super) fn is_due(&self, step: u64, age: f64) -> bool {
+        let throws = self.falls && !self.rests && !self.waits(age);
+        let next = self.waiting.last();
+        let is_waiting = next.is_some_and(|&(birth, _)| birth <= step || !self.is_sorted);
+        throws || self.volley > 0 || is_waiting
+    }
+
     /// Adds the sources of one step to `calls`.
     pub(super) fn seed(
         &mut self,
@@ -153,7 +162,7 @@ impl<'a> Supply<'a> {
             let bounds = self.blade.mature().bounds();
             self.waiting.reverse();
             let key = |&(birth, p): &(u64, DVec2)| (birth.max(step), z_order(bounds, p));
-            self.waiting.sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
+            self.waiting.par_sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
         }
         while let Some(&(birth, p)) = self.waiting.last()
             && birth <= step

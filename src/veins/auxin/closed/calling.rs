@@ -1,8 +1,10 @@
 //! Whom the sources call in a step. Each finds out for itself and changes nothing, so that many are shared
-//! out to threads; what they found out is then noted in the order of their ids.
+//! out to threads, each to the one that tells it of new nodes; what they found out is then noted in the order
+//! of their ids.
+
+use std::ops::Range;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::super::NONE;
 use super::super::callers::unit;
@@ -17,7 +19,7 @@ pub(super) const A_THREAD: usize = 256;
 /// What some sources found out. Kept for its memory.
 #[derive(Debug, Default)]
 pub(super) struct Answers {
-    calls: Vec<(u32, NodeId, DVec2)>,
+    calls: Vec<Call>,
     /// Those that act no more.
     gone: Vec<u32>,
     /// The slots of those out of reach of all nodes.
@@ -45,38 +47,56 @@ impl Answers {
     }
 }
 
+/// A call of a source, and the unit vector from the node to it.
+type Call = (u32, NodeId, DVec2);
+
 impl Sources {
     /// Lets the sources in reach of a node call.
     pub(super) fn call_all(&mut self, at: At<'_>, metric: Metric) {
         let mut acting = self.field.take_acting();
-        let threads = rayon::current_num_threads().min(acting.len() / A_THREAD).max(1);
         let mut answers = std::mem::take(&mut self.answers);
-        answers.resize_with(threads.max(answers.len()), Answers::default);
+        let shares = self.field.shares(acting.len(), A_THREAD);
+        answers.resize_with(shares.len(), Answers::default);
         answers.iter_mut().for_each(Answers::clear);
-        if threads > 1 {
-            let chunks = acting.par_chunks(acting.len().div_ceil(threads)).zip(&mut answers);
-            chunks.for_each(|(sources, answers)| self.ask(sources, at, metric, answers));
-        } else {
-            self.ask(&acting, at, metric, &mut answers[0]);
-        }
-        for found in &answers {
+        let mut pieces: Vec<_> = shares.into_iter().zip(&mut answers).collect();
+        self.field.each_share(&mut pieces, |(share, found)| {
+            self.ask(&acting, share, at, metric, found);
+        });
+        let mut gone = Vec::new();
+        for found in &mut answers {
             self.note(found);
+            gone.append(&mut found.gone);
         }
-        let mut gone = answers.iter().flat_map(|found| &found.gone).peekable();
-        acting.retain(|source| gone.next_if_eq(&source).is_none());
+        self.note_calls(&answers);
+        gone.sort_unstable();
+        let mut gone = gone.into_iter().peekable();
+        acting.retain(|source| gone.next_if_eq(source).is_none());
         self.answers = answers;
         self.field.set_acting(acting);
     }
 
-    fn ask(&self, sources: &[u32], at: At<'_>, metric: Metric, answers: &mut Answers) {
+    /// Asks those of the sources that stand in a share of the slots; the first tells of the dead, too.
+    fn ask(
+        &self,
+        sources: &[u32],
+        share: &Range<usize>,
+        at: At<'_>,
+        metric: Metric,
+        answers: &mut Answers,
+    ) {
         let nodes = at.nodes;
         let (kill2, search2) = (self.ranges.kill2(metric), self.ranges.search2(metric));
         let reach2 = self.ranges.reach2(metric);
         for &source in sources {
             let Some(i) = self.field.slot(source) else {
-                answers.gone.push(source);
+                if share.start == 0 {
+                    answers.gone.push(source);
+                }
                 continue;
             };
+            if !share.contains(&i) {
+                continue;
+            }
             let p = self.field.place(i);
             let State { mut around, tag } = *self.field.state(i);
             if self.deforms {
@@ -95,7 +115,8 @@ impl Sources {
                 continue;
             }
             let veins = (tag != NONE).then(|| self.followed(&around, tag, nodes));
-            answers.veins.extend(veins.map(|veins| (tag, veins)));
+            let news = veins.filter(|veins| *veins != self.tags[tag as usize].veins);
+            answers.veins.extend(news.map(|veins| (tag, veins)));
             for (k, node, distance2) in around.neighbours() {
                 let is_meant = distance2 > kill2
                     && distance2 <= reach2
@@ -129,8 +150,23 @@ impl Sources {
             self.store(i, Around::EMPTY);
         }
         self.reached.extend(&found.reached);
-        for &(source, node, unit) in &found.calls {
-            self.calls.add(source, node, unit);
+    }
+
+    /// Lets the sources of all shares call in the order of their ids. Neighbours mostly follow each other and
+    /// are of one share: each has long runs.
+    fn note_calls(&mut self, answers: &[Answers]) {
+        let mut left: Vec<&[Call]> = answers.iter().map(|found| &found.calls[..]).collect();
+        loop {
+            left.retain(|calls| !calls.is_empty());
+            left.sort_unstable_by_key(|calls| calls[0].0);
+            let Some((first, others)) = left.split_first_mut() else { return };
+            let until = others.first().map_or(u32::MAX, |calls| calls[0].0);
+            while let Some((&(source, node, unit), rest)) = first.split_first()
+                && source < until
+            {
+                self.calls.add(source, node, unit);
+                *first = rest;
+            }
         }
     }
 }

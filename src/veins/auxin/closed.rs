@@ -17,6 +17,7 @@ mod reached;
 mod states;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::NONE;
 use super::callers::{self, Callers, Ranges};
@@ -29,6 +30,9 @@ use super::open;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
+
+/// So many sources are born at once: memory.
+const A_BIRTH: usize = 1 << 14;
 
 /// A tagged source waits this many times as long as its farthest vein would need.
 const PATIENCE: f64 = 2.0;
@@ -100,6 +104,17 @@ impl Sources {
         Sight { is_clear, is_lasting: is_clear }
     }
 
+    /// Adds a source with what it knows.
+    fn bear(&mut self, p: DVec2, around: Around, metric: Metric) {
+        let least2 = around.least2();
+        let state = State { around, tag: NONE };
+        let is_acting = least2.is_finite() || self.warps;
+        let id = self.field.add(p, around.most2(), is_acting, state);
+        if least2 <= self.ranges.kill2(metric) {
+            self.reached.push(id);
+        }
+    }
+
     /// The same sources in open venation.
     pub(super) fn opened(
         &self,
@@ -143,16 +158,23 @@ impl Callers for Sources {
         self.field.living()
     }
 
+    fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
+        self.horizon.follow(metric);
+        self.field.expect(places.len());
+        for places in places.chunks(A_BIRTH) {
+            let look_around = |&p: &DVec2| self.look_around(p, nodes, metric);
+            let arounds: Vec<Around> =
+                places.par_iter().with_min_len(calling::A_THREAD).map(look_around).collect();
+            for (&p, around) in places.iter().zip(arounds) {
+                self.bear(p, around, metric);
+            }
+        }
+    }
+
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
         self.horizon.follow(metric);
         let around = self.look_around(p, nodes, metric);
-        let least2 = around.least2();
-        let state = State { around, tag: NONE };
-        let is_acting = least2.is_finite() || self.warps;
-        let id = self.field.add(p, around.most2(), is_acting, state);
-        if least2 <= self.ranges.kill2(metric) {
-            self.reached.push(id);
-        }
+        self.bear(p, around, metric);
     }
 
     fn keep_order(&mut self, metric: Metric) {
@@ -167,10 +189,6 @@ impl Callers for Sources {
 
     fn calls(&self) -> &Calls {
         &self.calls
-    }
-
-    fn place(&self, source: u32) -> DVec2 {
-        self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
     }
 
     fn take_over(

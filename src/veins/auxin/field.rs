@@ -161,6 +161,14 @@ impl<S: Copy + Send + Sync> Field<S> {
         id
     }
 
+    /// Makes room for so many more sources.
+    pub(super) fn expect(&mut self, more: usize) {
+        self.slots.reserve(more);
+        self.places.reserve(more);
+        self.bound2.reserve(more);
+        self.sources.reserve(more);
+    }
+
     /// Adds a source that is used up already, so that those after it keep their ids.
     pub(super) fn add_spent(&mut self) {
         self.slots.push(NONE);

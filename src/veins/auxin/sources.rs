@@ -164,11 +164,10 @@ impl<'a> Supply<'a> {
             let key = |&(birth, p): &(u64, DVec2)| (birth.max(step), z_order(bounds, p));
             self.waiting.par_sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
         }
-        while let Some(&(birth, p)) = self.waiting.last()
-            && birth <= step
-        {
-            self.waiting.pop();
-            calls.add(p, nodes, metric);
+        let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
+        let born: Vec<DVec2> = self.waiting.drain(waits..).rev().map(|(_, p)| p).collect();
+        if !born.is_empty() {
+            calls.add_all(&born, nodes, metric);
         }
         if self.falls && !self.rests && !self.waits(age) {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();

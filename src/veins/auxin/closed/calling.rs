@@ -7,7 +7,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::super::NONE;
-use super::super::callers::unit;
+use super::super::calls::unit;
 use super::super::neighbours::{Around, SECTORS};
 use super::{At, Sources, State};
 use crate::growth::Metric;
@@ -47,8 +47,15 @@ impl Answers {
     }
 }
 
-/// A call of a source, and the unit vector from the node to it.
-type Call = (u32, NodeId, DVec2);
+/// A call of a source.
+#[derive(Debug, Clone, Copy)]
+struct Call {
+    source: u32,
+    node: NodeId,
+    from: DVec2,
+    /// From the node to the source.
+    unit: DVec2,
+}
 
 impl Sources {
     /// Lets the sources in reach of a node call.
@@ -129,7 +136,8 @@ impl Sources {
                     answers.sights.push((i, k, sight.is_clear));
                 }
                 if sight.is_clear {
-                    answers.calls.push((source, node, unit(nodes.position(node), p, metric)));
+                    let unit = unit(nodes.position(node), p, metric);
+                    answers.calls.push(Call { source, node, from: p, unit });
                 }
             }
         }
@@ -158,13 +166,13 @@ impl Sources {
         let mut left: Vec<&[Call]> = answers.iter().map(|found| &found.calls[..]).collect();
         loop {
             left.retain(|calls| !calls.is_empty());
-            left.sort_unstable_by_key(|calls| calls[0].0);
+            left.sort_unstable_by_key(|calls| calls[0].source);
             let Some((first, others)) = left.split_first_mut() else { return };
-            let until = others.first().map_or(u32::MAX, |calls| calls[0].0);
-            while let Some((&(source, node, unit), rest)) = first.split_first()
+            let until = others.first().map_or(u32::MAX, |calls| calls[0].source);
+            while let Some((&Call { source, node, from, unit }, rest)) = first.split_first()
                 && source < until
             {
-                self.calls.add(source, node, unit);
+                self.calls.add(from, node, unit);
                 *first = rest;
             }
         }

@@ -91,3 +91,36 @@ impl Shares {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_shared_out_anew_only_where_one_has_too_much() {
+        let mut shares = Shares::default();
+        shares.share_out(2, 0..10);
+        assert_eq!(shares.cuts(), [5]);
+        shares.share_out(2, 1..11);
+        assert_eq!(shares.cuts(), [5], "four and six are even enough");
+        shares.share_out(2, 4..14);
+        assert_eq!(shares.cuts(), [9]);
+        shares.share_out(3, 0..9);
+        assert_eq!(shares.cuts(), [3, 6]);
+    }
+
+    #[test]
+    fn each_piece_of_work_is_done_once() {
+        for threads in 1..4 {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let mut shares = Shares::default();
+            shares.share_out(3, 0..9);
+            let mut pieces = [0; 3];
+            for _ in 0..100 {
+                pool.install(|| shares.each(&mut pieces, |piece| *piece += 1));
+            }
+            assert_eq!(pieces, [100; 3]);
+        }
+    }
+}

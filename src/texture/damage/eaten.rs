@@ -13,6 +13,12 @@ const FROM_PRIMARY_MM: f32 = 0.9;
 /// Farther from the base than this (lengths of the blade) primary veins are eaten with the rest.
 const TENDER: f64 = 0.72;
 
+/// Tears keep so far from what is gone already (mm).
+const FROM_GAP_MM: f32 = 0.9;
+
+/// A tear shorter than this (square roots of the blade's area) would be a notch.
+const SHORTEST_TEAR: f64 = 0.06;
+
 impl Blade<'_> {
     /// Eats holes that stop at the larger veins.
     pub(super) fn holes(&mut self, share: f64) {
@@ -97,47 +103,64 @@ impl Blade<'_> {
         self.at(node).length() > TENDER * self.margin.length_mm()
     }
 
-    /// Tears the blade from the margin towards a primary vein, between the secondaries.
+    /// Tears the blade from the margin inwards, along the larger veins and between them, as wind does: where
+    /// and in which direction of some it would go farthest without crossing one.
     pub(super) fn tears(&mut self, count: usize) {
         let outline = self.margin.outline().to_vec();
         let length: f64 = polygon::edges(&outline).map(|(a, b)| a.distance(b)).sum();
+        let step = self.lattice.spacing() * 1.5;
         for _ in 0..count {
-            let place = self.rng.between(0.0, length);
-            let (mut p, mut heading) = along(&outline, place);
-            let start = p;
-            let reach = f64::from(self.breadth * self.uniform(0.1, 0.4));
+            let wanted = f64::from(self.breadth * self.uniform(0.15, 0.45));
+            let places: [f64; 4] = std::array::from_fn(|_| self.rng.between(0.0, length));
+            let ways = places.into_iter().flat_map(|place| {
+                let (start, inward) = along(&outline, place);
+                let turned = move |tenths: i32| {
+                    let turn = DVec2::from_angle(0.18 * f64::from(tenths));
+                    (start, turn.rotate(inward))
+                };
+                (-6..=6).map(turned)
+            });
+            let clear =
+                |(start, heading)| (self.clear_way(start, heading, step, wanted), start, heading);
+            let (reach, start, heading) = ways
+                .map(clear)
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .expect("there are ways from four places");
+            if reach < SHORTEST_TEAR * f64::from(self.breadth) {
+                continue;
+            }
             let opening = f64::from(self.breadth * self.uniform(0.008, 0.03));
-            let step = self.lattice.spacing() * 1.5;
             let mut path = vec![start - heading * 2.0 * step, start];
-            let mut gone = 0.0;
-            while gone < reach {
-                let node = self.node_at(p);
-                let place = self.place(node);
-                if self.primary[node] < FROM_PRIMARY_MM || (gone > 4.0 * step && place.edge < 0.0) {
+            // Not quite straight: it gives way aside and comes back.
+            let (mut p, mut aside) = (start, 0.0);
+            while p.distance(start) < reach {
+                aside = 0.85 * aside + f64::from(self.uniform(-0.12, 0.12));
+                p += DVec2::from_angle(aside).rotate(heading) * step;
+                if !self.is_clear(p, p.distance(start)) {
                     break;
                 }
-                // Away from the veins beside it, and not quite straight.
-                let away = self.downhill(node) * if place.major < 1.2 { 0.35 } else { 0.0 };
-                let wander = f64::from(self.uniform(-0.22, 0.22));
-                heading = (heading + heading.perp() * wander - away).normalize_or(heading);
-                p += heading * step;
-                gone += step;
                 path.push(p);
             }
             self.open(&path, opening);
         }
     }
 
-    /// The direction in which the larger veins come nearer.
-    fn downhill(&self, node: usize) -> DVec2 {
-        let side = self.guide.side();
-        let (x, y) = (node % side, node / side);
-        if x == 0 || y == 0 || x + 1 == side || y + 1 == side {
-            return DVec2::ZERO;
-        }
-        let major = |i: usize| f64::from(self.place(i).major);
-        DVec2::new(major(node - 1) - major(node + 1), major(node + side) - major(node - side))
-            .normalize_or_zero()
+    /// How far a straight tear would come, `wanted` at most (mm).
+    fn clear_way(&self, start: DVec2, heading: DVec2, step: f64, wanted: f64) -> f64 {
+        let places = (1..).map(|i| f64::from(i) * step).take_while(|gone| *gone <= wanted);
+        places.take_while(|&gone| self.is_clear(start + heading * gone, gone)).last().unwrap_or(0.0)
+    }
+
+    /// Whether a tear that has come so far (mm) may pass: clear of larger veins and other tears, and of the
+    /// margin on its other side, or it would cut a piece off.
+    fn is_clear(&self, p: DVec2, gone: f64) -> bool {
+        let node = self.node_at(p);
+        let place = self.place(node);
+        let from_margin = (0.4 * gone as f32).min(0.05 * self.breadth);
+        self.primary[node] > FROM_PRIMARY_MM
+            && place.major > FROM_MAJOR_MM
+            && place.edge > from_margin
+            && self.nodes[node][GONE] < -FROM_GAP_MM
     }
 
     /// A wedge along a path, `opening` wide where it begins (mm).

@@ -68,6 +68,8 @@ impl Blade<'_> {
 
     /// Galleries that wind between the veins and widen as their maker grows; it leaves a dark line.
     pub(super) fn mines(&mut self, count: usize) {
+        // Where others have eaten.
+        let mut galleries: Vec<DVec2> = Vec::new();
         for _ in 0..count {
             let start = self.dart();
             let mut p = self.at(start);
@@ -87,12 +89,13 @@ impl Blade<'_> {
                     break;
                 }
                 bend = 0.9 * bend + self.uniform(-0.07, 0.07);
-                // What it has eaten already is empty: a piece back along its way it goes no more.
+                // What is eaten already is empty: a piece back along its own way it goes no more.
                 let behind = way.len().saturating_sub((8.0 * widest / step) as usize);
                 let ahead = f64::from(4.0 * half + step);
                 let turned = (-6..=6).map(|k| 0.11 * k as f32).map(|turn| {
                     let towards = DVec2::from_angle(f64::from(bend + turn)).rotate(heading);
-                    let cost = self.unease(p + towards * ahead, half, &way[..behind]);
+                    let eaten = galleries.iter().chain(&way[..behind]);
+                    let cost = self.unease(p + towards * ahead, half, eaten);
                     (cost + 1.5 * turn * turn, towards)
                 });
                 let (cost, towards) =
@@ -106,18 +109,19 @@ impl Blade<'_> {
                 p = next;
                 way.push(p);
             }
+            galleries.append(&mut way);
         }
     }
 
-    /// How little a miner of this half width likes a place: for the larger veins, for the margin, for the
-    /// gallery it has eaten.
-    fn unease(&self, p: DVec2, half: f32, eaten: &[DVec2]) -> f32 {
+    /// How little a miner of this half width likes a place: for the larger veins, for the margin, for
+    /// what it or another has eaten.
+    fn unease<'p>(&self, p: DVec2, half: f32, eaten: impl Iterator<Item = &'p DVec2>) -> f32 {
         let place = self.place(self.node_at(p));
         let near = |distance: f32, enough: f32| (1.0 - distance / (enough * half)).clamp(0.0, 1.5);
-        let own = eaten.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
+        let eaten = eaten.map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
         1.2 * near(place.major, 2.5).powi(2)
             + 2.0 * near(place.edge, 4.0)
-            + 3.0 * near(own.sqrt() as f32, 5.0)
+            + 3.0 * near(eaten.sqrt() as f32, 5.0)
     }
 
     fn gallery(&mut self, a: DVec2, b: DVec2, half: f32) {

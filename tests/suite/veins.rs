@@ -238,6 +238,45 @@ fn threads_show_nowhere_in_large_steps() {
 }
 
 #[test]
+fn threads_show_nowhere_in_a_blade_too_narrow_to_be_shared_out() {
+    let right = [(0.75, 1.0), (0.75, 150.0), (0.75, 299.0)].map(DVec2::from);
+    let left = [(-0.75, 299.0), (-0.75, 150.0), (-0.75, 1.0)].map(DVec2::from);
+    let ends = [DVec2::ZERO, DVec2::new(0.0, 300.0)];
+    let outline = [&ends[..1], &right[..], &ends[1..], &left[..]].concat();
+    let margin = Margin::new(outline, 4, Vec::new(), "").expect("a strip");
+    let spec = VeinSpec {
+        algorithm: Algorithm::AuxinClosed,
+        spawn_rate: 4000.0,
+        source_spawn_distance_mm: 0.15,
+        vein_spawn_distance_mm: 0.15,
+        kill_distance_mm: 0.1,
+        node_step_mm: 0.05,
+        attraction_distance_mm: 1.0,
+        ..VeinSpec::default()
+    };
+    let growth = GrowthSpec {
+        r#type: GrowthType::Isotropic,
+        total_steps: 60,
+        start_step: 20,
+        ..GrowthSpec::default()
+    };
+    let blade = GrowingBlade::new(margin, &growth).expect("a blade");
+    let mut start = veins::VeinGraph::new();
+    for i in 1..600 {
+        start.add_root(DVec2::new(0.0, 0.5 * f64::from(i)));
+    }
+    let grow = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let mut rng = Seed(1).stream(Stage::AuxinSources);
+        pool.install(|| auxin::grow(&spec, &blade, start.clone(), &mut rng, &mut Silent))
+            .expect("grows")
+    };
+    let alone = grow(1);
+    assert!(alone.sources > 2000, "{} sources are too few to be shared out", alone.sources);
+    assert!(grow(2) == alone && grow(3) == alone);
+}
+
+#[test]
 fn non_uniform_growth_at_even_rates_agrees_with_the_plain_types_node_by_node() {
     type Change = fn(&mut RateSpec);
     let pairs: [(GrowthType, Change); 4] = [

@@ -240,6 +240,8 @@ impl<S: Copy + Send + Sync> Field<S> {
     }
 
     pub(super) fn set_acting(&mut self, acting: Vec<u32>) {
+        let acts = |&id: &u32| self.slot(id).is_some_and(|slot| self.sources[slot].is_acting);
+        debug_assert!(acting.iter().all(acts), "others have been taken out");
         self.acting = acting;
     }
 

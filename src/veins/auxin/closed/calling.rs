@@ -76,6 +76,8 @@ impl Sources {
         }
         self.note_calls(&answers);
         gone.sort_unstable();
+        // A first share without slots and the next both begin at the first.
+        gone.dedup();
         let mut gone = gone.into_iter().peekable();
         acting.retain(|source| gone.next_if_eq(source).is_none());
         self.answers = answers;

@@ -5,7 +5,10 @@ use glam::DVec2;
 use palette::{FromColor, Lab, Srgb};
 use venation::geometry::polygon::signed_area;
 use venation::observer::Silent;
+use venation::pipeline;
+use venation::presets;
 use venation::seed::Seed;
+use venation::spec::LeafSpec;
 use venation::texture::damage::DamageSpec;
 use venation::texture::map::MapKind;
 use venation::texture::pigment::{Albedo, ColourModel, ColourType, Hsv};
@@ -357,6 +360,27 @@ fn eaten_leaves_hang_together_and_their_veins_end_at_the_gaps() {
     });
     let bare = bare.count();
     assert!(nodes.len() > 500 && bare < nodes.len() / 500, "{bare} of {}", nodes.len());
+}
+
+#[test]
+fn tears_cut_nothing_off() {
+    let preset = presets::find("maple").expect("a preset").document().expect("valid");
+    let mut spec = preset.resolve(Seed(1)).expect("valid");
+    spec.texture.size_px = 384;
+    spec.veins.spawn_rate /= 10.0;
+    let grown = pipeline::grow(&spec, Seed(1), &mut Silent).expect("it grows");
+    let paint =
+        |spec: &LeafSpec| pipeline::paint(spec, &grown, Seed(1), &mut Silent).expect("it paints");
+    let whole = cover(&paint(&spec));
+    spec.damage.tears = 1.0;
+    for seed in 1..=4 {
+        spec.damage.seed = seed;
+        let torn = paint(&spec);
+        // Ten tears take no more than what is between their edges.
+        let left = cover(&torn) / whole;
+        assert!(left > 0.93 && left < 0.995, "{left} of the blade are left");
+        assert_eq!(torn.rings.len(), 1, "neither holes nor pieces");
+    }
 }
 
 #[test]

@@ -166,8 +166,10 @@ impl Blade<'_> {
     /// A wedge along a path, `opening` wide where it begins (mm).
     fn open(&mut self, path: &[DVec2], opening: f64) {
         let last = (path.len() - 1) as f64;
+        // What is finer falls between the nodes and would be a row of dots.
+        let finest = 0.75 * self.lattice.spacing();
         for (i, pair) in path.windows(2).enumerate() {
-            let half = 0.5 * opening * (1.0 - i as f64 / last) + 0.04;
+            let half = (0.5 * opening * (1.0 - i as f64 / last)).max(finest);
             for node in self.lattice.nodes_near(pair[0], pair[1], half + 1.0) {
                 let p = self.at(node);
                 let distance = polygon::nearest_on_segment(pair[0], pair[1], p).distance(p);

@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use super::NONE;
-use crate::growth::Metric;
 use crate::veins::graph::NodeId;
 
 /// The calls of one node.
@@ -17,15 +16,6 @@ struct Called {
     count: u32,
 }
 
-/// A call.
-#[derive(Debug, Clone, Copy)]
-struct Call {
-    /// Where the source is.
-    from: DVec2,
-    /// The next call of the same node.
-    next: u32,
-}
-
 /// Who calls whom.
 #[derive(Debug, Default)]
 pub(super) struct Calls {
@@ -33,7 +23,8 @@ pub(super) struct Calls {
     /// for few nodes are called in a step.
     places: Vec<u32>,
     called: Vec<Called>,
-    calls: Vec<Call>,
+    /// The caller, and the next call of the same node.
+    calls: Vec<(u32, u32)>,
 }
 
 impl Calls {
@@ -44,15 +35,15 @@ impl Calls {
         self.called.clear();
     }
 
-    /// Lets a source at `from` call a node, which lies in the direction −`unit`.
+    /// Lets a source call a node, which lies in the direction −`unit`.
     ///
     /// Sources call in the order of their ids: floating-point addition is not associative.
-    pub(super) fn add(&mut self, from: DVec2, node: NodeId, unit: DVec2) {
+    pub(super) fn add(&mut self, source: u32, node: NodeId, unit: DVec2) {
         let call = self.calls.len() as u32;
-        self.calls.push(Call { from, next: NONE });
+        self.calls.push((source, NONE));
         match self.called.get_mut(self.places[node as usize] as usize) {
             Some(entry) if entry.node == node => {
-                self.calls[entry.last as usize].next = call;
+                self.calls[entry.last as usize].1 = call;
                 entry.last = call;
                 entry.count += 1;
                 entry.pull += unit;
@@ -85,28 +76,10 @@ impl Calls {
         self.of(node).count as usize
     }
 
-    /// Where the callers of a called node are, by their ids.
-    fn callers(&self, node: NodeId) -> impl Iterator<Item = DVec2> + '_ {
-        let call = |at: u32| (at != NONE).then(|| &self.calls[at as usize]);
-        std::iter::successors(call(self.of(node).first), move |&&Call { next, .. }| call(next))
-            .map(|call| call.from)
+    /// The callers of a called node, ascending.
+    pub(super) fn callers(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
+        let call = |at: u32| (at != NONE).then(|| self.calls[at as usize]);
+        std::iter::successors(call(self.of(node).first), move |&(_, next)| call(next))
+            .map(|(source, _)| source)
     }
-
-    /// The unit vectors from a called node at `p` towards its callers, by their ids.
-    pub(super) fn units(&self, node: NodeId, p: DVec2, metric: Metric) -> Vec<DVec2> {
-        self.callers(node).map(|source| unit(p, source, metric)).collect()
-    }
-
-    /// The unit vector from a called node at `p` towards its nearest caller, the first among equals.
-    pub(super) fn unit_to_nearest(&self, node: NodeId, p: DVec2, metric: Metric) -> DVec2 {
-        let distance2 = |source: &DVec2| metric.distance_squared(*source, p);
-        let nearest = self.callers(node).min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
-        nearest.map_or(DVec2::ZERO, |source| unit(p, source, metric))
-    }
-}
-
-/// The unit vector from a node to a source.
-pub(super) fn unit(node: DVec2, source: DVec2, metric: Metric) -> DVec2 {
-    let towards = metric.between(node, source);
-    towards / towards.length_squared().sqrt()
 }

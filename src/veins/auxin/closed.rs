@@ -17,7 +17,6 @@ mod reached;
 mod states;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::NONE;
 use super::callers::{self, Callers, Ranges};
@@ -31,14 +30,11 @@ use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
 
-/// So many sources are born at once: memory.
-const A_BIRTH: usize = 1 << 14;
-
 /// A tagged source waits this many times as long as its farthest vein would need.
 const PATIENCE: f64 = 2.0;
 
 /// The veins that a source waits for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 struct Tag {
     veins: [NodeId; SECTORS],
     last_step: u64,
@@ -87,7 +83,16 @@ impl Sources {
         }
     }
 
-    /// Whether a source at `p` sees its neighbour in a sixth.
+    /// Whether a source sees its neighbour in a sixth.
+    fn sees(&mut self, i: usize, k: usize, node: NodeId, at: At<'_>) -> bool {
+        let sight = self.sight(&self.field.state(i).around, self.field.place(i), (k, node), at);
+        if sight.is_lasting {
+            self.field.state_mut(i).around.set_sight(k, sight.is_clear);
+        }
+        sight.is_clear
+    }
+
+    /// The same of a source at `p` with these neighbours.
     fn sight(&self, around: &Around, p: DVec2, (k, node): (usize, NodeId), at: At<'_>) -> Sight {
         if self.convex {
             return Sight { is_clear: true, is_lasting: false };
@@ -102,17 +107,6 @@ impl Sources {
         // The blade only gains tissue: what is clear stays clear.
         let is_clear = !at.blade.blocks_sight_yet(p, q, at.step);
         Sight { is_clear, is_lasting: is_clear }
-    }
-
-    /// Adds a source with what it knows.
-    fn bear(&mut self, p: DVec2, around: Around, metric: Metric) {
-        let least2 = around.least2();
-        let state = State { around, tag: NONE };
-        let is_acting = least2.is_finite() || self.warps;
-        let id = self.field.add(p, around.most2(), is_acting, state);
-        if least2 <= self.ranges.kill2(metric) {
-            self.reached.push(id);
-        }
     }
 
     /// The same sources in open venation.
@@ -158,23 +152,16 @@ impl Callers for Sources {
         self.field.living()
     }
 
-    fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
-        self.horizon.follow(metric);
-        self.field.expect(places.len());
-        for places in places.chunks(A_BIRTH) {
-            let look_around = |&p: &DVec2| self.look_around(p, nodes, metric);
-            let arounds: Vec<Around> =
-                places.par_iter().with_min_len(calling::A_THREAD).map(look_around).collect();
-            for (&p, around) in places.iter().zip(arounds) {
-                self.bear(p, around, metric);
-            }
-        }
-    }
-
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
         self.horizon.follow(metric);
         let around = self.look_around(p, nodes, metric);
-        self.bear(p, around, metric);
+        let least2 = around.least2();
+        let state = State { around, tag: NONE };
+        let is_acting = least2.is_finite() || self.warps;
+        let id = self.field.add(p, around.most2(), is_acting, state);
+        if least2 <= self.ranges.kill2(metric) {
+            self.reached.push(id);
+        }
     }
 
     fn keep_order(&mut self, metric: Metric) {
@@ -189,6 +176,10 @@ impl Callers for Sources {
 
     fn calls(&self) -> &Calls {
         &self.calls
+    }
+
+    fn place(&self, source: u32) -> DVec2 {
+        self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
     }
 
     fn take_over(

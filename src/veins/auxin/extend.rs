@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::calls::Calls;
+use super::callers::Callers;
 use super::nodes::{LEAST_BETWEEN_NODES, Meeting, Nodes};
 use super::web::Edge;
 use crate::growth::{GrowingBlade, Metric};
@@ -21,35 +21,22 @@ const LEAST_PULL: f64 = 1.0 - 1e-9;
 const LONGEST_JOIN: f64 = 2.0;
 
 impl Nodes {
-    /// Grows each called node one step towards its callers.
-    pub(super) fn extend(
-        &mut self,
-        calls: &Calls,
-        blade: &GrowingBlade,
-        step: u64,
-        metric: Metric,
-    ) {
-        for node in calls.nodes() {
-            self.grow_on(node, calls, blade, step, metric);
-        }
-    }
-
     /// Grows a called node towards its callers.
     ///
     /// Where they pull apart (their unit vectors sum to less than 1) the first gets a child of its
     /// own and is left out, until the rest agree or one is left (Foster).
-    fn grow_on(
+    pub(super) fn extend(
         &mut self,
         node: NodeId,
-        calls: &Calls,
+        calls: &dyn Callers,
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
     ) {
-        let mut pull = calls.pull(node);
-        let mut left = calls.count(node);
+        let mut pull = calls.calls().pull(node);
+        let mut left = calls.calls().count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
-            let units = calls.units(node, self.position(node), metric);
+            let units = calls.units(node, self, metric);
             let mut first = 0;
             while left > 1 && pull.length_squared() < LEAST_PULL {
                 self.sprout(node, units[first], blade, step, metric);
@@ -74,7 +61,7 @@ impl Nodes {
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
-            let towards = calls.unit_to_nearest(node, self.position(node), metric);
+            let towards = calls.unit_to_nearest(node, self, metric);
             self.sprout(node, towards, blade, step, metric);
         }
     }
@@ -86,14 +73,14 @@ impl Nodes {
         node: NodeId,
         towards: DVec2,
         left: usize,
-        calls: &Calls,
+        calls: &dyn Callers,
         metric: Metric,
     ) -> DVec2 {
         let parent = self.graph.parent(node).filter(|_| self.web.is_tip(node));
         let mut way = towards;
         if let Some(parent) = parent.filter(|_| left > 1 && self.steering.straightens()) {
             let heading = metric.between(self.position(parent), self.position(node)).normalize();
-            let units = calls.units(node, self.position(node), metric);
+            let units = calls.units(node, self, metric);
             way = self.steering.ahead(&units[units.len() - left..], heading).normalize_or(towards);
         }
         self.steering.pulled(way)

@@ -8,15 +8,11 @@
 
 mod cells;
 mod offer;
-mod shares;
-
-use std::ops::Range;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use self::cells::Cells;
-use self::shares::Shares;
 use super::NONE;
 use super::tiles::Found;
 use crate::geometry::Rect;
@@ -114,7 +110,6 @@ pub(super) struct Field<S> {
     news: News,
     /// What new nodes found, by thread; kept for its memory.
     finds: Vec<offer::Finds>,
-    shares: Shares,
 }
 
 impl<S: Copy + Send + Sync> Field<S> {
@@ -132,7 +127,6 @@ impl<S: Copy + Send + Sync> Field<S> {
             dead: Vec::new(),
             news: News::default(),
             finds: Vec::new(),
-            shares: Shares::default(),
         }
     }
 
@@ -159,14 +153,6 @@ impl<S: Copy + Send + Sync> Field<S> {
             self.arrived.push(id);
         }
         id
-    }
-
-    /// Makes room for so many more sources.
-    pub(super) fn expect(&mut self, more: usize) {
-        self.slots.reserve(more);
-        self.places.reserve(more);
-        self.bound2.reserve(more);
-        self.sources.reserve(more);
     }
 
     /// Adds a source that is used up already, so that those after it keep their ids.
@@ -240,8 +226,6 @@ impl<S: Copy + Send + Sync> Field<S> {
     }
 
     pub(super) fn set_acting(&mut self, acting: Vec<u32>) {
-        let acts = |&id: &u32| self.slot(id).is_some_and(|slot| self.sources[slot].is_acting);
-        debug_assert!(acting.iter().all(acts), "others have been taken out");
         self.acting = acting;
     }
 
@@ -278,26 +262,6 @@ impl<S: Copy + Send + Sync> Field<S> {
             self.slots[source.id as usize] = slot as u32;
         }
         self.cells = cells;
-        self.shares.forget();
-    }
-
-    /// The slots of each share of the sources, one to a thread; of all in one where there is too little work
-    /// for giving each thread so much.
-    pub(super) fn shares(&self, work: usize, a_thread: usize) -> Vec<Range<usize>> {
-        let cuts = self.shares.cuts();
-        let cuts = if work < (cuts.len() + 1) * a_thread { &[] } else { cuts };
-        let starts: Vec<usize> = cuts.iter().map(|&column| self.cells.first_of(column)).collect();
-        let from = std::iter::once(0).chain(starts.iter().copied());
-        let to = starts.iter().copied().chain([self.places.len()]);
-        from.zip(to).map(|(from, to)| from..to).collect()
-    }
-
-    /// Does each piece of work, one to a share, on the thread that knows the share.
-    pub(super) fn each_share<T: Send>(&self, pieces: &mut [T], work: impl Fn(&mut T) + Sync) {
-        match pieces {
-            [piece] => work(piece),
-            pieces => self.shares.each(pieces, work),
-        }
     }
 
     /// Columns and rows of the cells, and their width.
@@ -314,7 +278,7 @@ impl<S: Copy + Send + Sync> Field<S> {
     /// is none.
     pub(super) fn bound2_of_cell(&self, row: usize, column: usize) -> f64 {
         let newborn = self.cells.newborn_in(row, column).map(|slot| &self.bound2[slot]);
-        let sorted = &self.bound2[self.cells.run(column, row, row)];
+        let sorted = &self.bound2[self.cells.run(row, column, column)];
         sorted
             .iter()
             .chain(newborn)
@@ -343,7 +307,7 @@ impl<S: Copy + Send + Sync> Field<S> {
                 source.hear(bound2, hear, news);
             }
         };
-        let run = cells.run(column, row, row);
+        let run = cells.run(row, column, column);
         let there = places[run.clone()].iter().zip(&mut bound2[run.clone()]).zip(&mut sources[run]);
         for ((&place, bound2), source) in there {
             tell(place, bound2, source);

@@ -146,9 +146,6 @@ pub fn grow(
             Some(closed) => closed,
             None => &mut open,
         };
-        if supply.is_due(step, age) || blade.deforms() || blade.is_warped() {
-            nodes.follow();
-        }
         // Seed new sources where the blade has room.
         supply.seed(step, age, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.
@@ -156,7 +153,9 @@ pub fn grow(
         calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
-        nodes.extend(calls.calls(), blade, step, metric);
+        for node in calls.calls().nodes() {
+            nodes.extend(node, calls, blade, step, metric);
+        }
         let points = convergence.as_mut().filter(|points| points.is_open(made));
         let is_open = points.is_some();
         if let Some(points) = points {

@@ -27,8 +27,7 @@ pub(super) struct Nodes {
     pub(super) graph: VeinGraph,
     /// Cells of about a step: what is around a child.
     pub(super) near: PointGrid,
-    /// Cells of about the spacing of sources: what is nearest to a source. Where veins do not join, it knows
-    /// of new nodes only after [`follow`](Self::follow).
+    /// Cells of about the spacing of sources: what is nearest to a source.
     far: PointGrid,
     pub(super) step_mm: f64,
     /// In the mature leaf; infinite without a limit.
@@ -109,21 +108,6 @@ impl Nodes {
         self.web.refine(cell, self.graph.positions());
     }
 
-    /// Lets sources ask for what is near them.
-    ///
-    /// Open venation asks for that where sources are born and where the blade deforms, and mostly neither
-    /// happens any more: a tenth of the time of growing.
-    pub(super) fn follow(&mut self) {
-        let new = &self.graph.positions()[self.far.len()..];
-        new.iter().for_each(|&p| _ = self.far.push(p));
-    }
-
-    /// The nodes by place, in cells of about the spacing of sources.
-    fn far(&self) -> &PointGrid {
-        debug_assert_eq!(self.far.len(), self.graph.len(), "those asked know all nodes");
-        &self.far
-    }
-
     /// How far a vein grows in a step.
     pub(super) fn stride(&self, metric: Metric) -> f64 {
         metric.length(self.step_mm).min(self.longest_step_mm * metric.stretch.min_element())
@@ -141,7 +125,7 @@ impl Nodes {
 
     /// The nodes by place, in cells of a few steps.
     pub(super) fn grid(&self) -> &PointGrid {
-        self.far()
+        &self.far
     }
 
     /// Whether a node stands between a source at `s` and the `node` at a squared distance from it.
@@ -157,7 +141,7 @@ impl Nodes {
         let distance = distance2.sqrt() * (1.0 + 1e-9);
         let (near, far) = (metric.around(s, distance), metric.around(p, distance));
         let (low, high) = ((s - near).max(p - far), (s + near).min(p + far));
-        self.far().any_near((low + high) / 2.0, (high - low) / 2.0, |id, q| {
+        self.far.any_near((low + high) / 2.0, (high - low) / 2.0, |id, q| {
             let other2 = metric.distance_squared(s, q);
             (other2, id) < (distance2, node) && metric.distance_squared(p, q) < distance2
         })
@@ -166,7 +150,7 @@ impl Nodes {
     /// Whether a node is nearer to `p` than `distance`.
     pub(super) fn any_within(&self, p: DVec2, distance: f64, metric: Metric) -> bool {
         distance > 0.0
-            && self.far().any_near(p, metric.around(p, distance), |_, q| {
+            && self.far.any_near(p, metric.around(p, distance), |_, q| {
                 metric.distance_squared(p, q) < distance * distance
             })
     }
@@ -174,10 +158,10 @@ impl Nodes {
     /// The node nearest to `p`, within a squared distance.
     pub(super) fn nearest(&self, p: DVec2, metric: Metric, limit2: f64) -> Option<Nearest> {
         if !metric.is_warped() {
-            return self.far().nearest(p, metric.stretch, limit2);
+            return self.far.nearest(p, metric.stretch, limit2);
         }
         let mut best = Nearest { id: NodeId::MAX, distance2: limit2, others2: limit2 };
-        self.far().for_each_outwards(
+        self.far.for_each_outwards(
             &mut best,
             p,
             |best, clear| metric.clearance(p, clear).powi(2) <= best.distance2,
@@ -204,9 +188,7 @@ impl Nodes {
     pub(super) fn add(&mut self, parent: NodeId, p: DVec2) -> NodeId {
         let node = self.graph.sprout(parent, p);
         self.near.push(p);
-        if self.meeting == Meeting::Join {
-            self.far.push(p);
-        }
+        self.far.push(p);
         self.web.add((parent, node), self.graph.positions());
         node
     }

@@ -11,8 +11,8 @@
 use glam::DVec2;
 
 use super::NONE;
-use super::callers::{self, Callers, Ranges};
-use super::calls::{Calls, unit};
+use super::callers::{self, Callers, Ranges, unit};
+use super::calls::Calls;
 use super::claims::{Claim, Sight};
 use super::field::{DEAD, Field, Told};
 use super::nodes::Nodes;
@@ -42,9 +42,8 @@ impl Views {
     }
 }
 
-/// New nodes for each thread, at least: a source only compares a distance, and what a thread would write
-/// another has to fetch in the same step. A thread for the nodes and one for the sources, which send each
-/// other what is new, took 0.77 of the time of one at a million sources: too little for what it needs.
+/// New nodes for each thread, at least: a source only compares a distance, and its place in memory is
+/// wanted by one thread again in the next step.
 const A_THREAD: usize = 1024;
 
 /// The living sources and whom they call.
@@ -114,8 +113,8 @@ impl Sources {
                 }
                 self.views.seen[id] = node;
             }
-            let place = self.views.places[id];
-            self.calls.add(place, node, unit(nodes.position(node), place, metric));
+            let unit = unit(nodes.position(node), self.views.places[id], metric);
+            self.calls.add(source, node, unit);
             true
         });
         self.field.set_acting(acting);
@@ -224,8 +223,8 @@ impl Callers for Sources {
             // One that only the kill distance reaches calls nobody, nor does one that is touched.
             let calls = near2 <= reach2 && near2 > 0.0;
             if calls && (self.convex || self.sees(slot, blade, step, nodes)) {
-                let place = self.field.place(slot);
-                self.calls.add(place, node, unit(nodes.position(node), place, metric));
+                let unit = unit(nodes.position(node), self.field.place(slot), metric);
+                self.calls.add(source, node, unit);
             }
             true
         });
@@ -234,6 +233,10 @@ impl Callers for Sources {
 
     fn calls(&self) -> &Calls {
         &self.calls
+    }
+
+    fn place(&self, source: u32) -> DVec2 {
+        self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
     }
 
     /// Lets the nodes from `before` on take over the sources they are nearest to, and removes every

@@ -1,7 +1,6 @@
 //! Where auxin sources come from: darts that fall where there is room, or given places.
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::callers::Callers;
 use super::habit::{self, Density};
@@ -118,14 +117,6 @@ impl<'a> Supply<'a> {
         self.waiting.push((self.blade.birth_step(p).unwrap_or(u64::MAX), p));
     }
 
-    /// Whether sources may come in this step.
-    pub(super) fn is_due(&self, step: u64, age: f64) -> bool {
-        let throws = self.falls && !self.rests && !self.waits(age);
-        let next = self.waiting.last();
-        let is_waiting = next.is_some_and(|&(birth, _)| birth <= step || !self.is_sorted);
-        throws || self.volley > 0 || is_waiting
-    }
-
     /// Adds the sources of one step to `calls`.
     pub(super) fn seed(
         &mut self,
@@ -162,12 +153,13 @@ impl<'a> Supply<'a> {
             let bounds = self.blade.mature().bounds();
             self.waiting.reverse();
             let key = |&(birth, p): &(u64, DVec2)| (birth.max(step), z_order(bounds, p));
-            self.waiting.par_sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
+            self.waiting.sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
         }
-        let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
-        let born: Vec<DVec2> = self.waiting.drain(waits..).rev().map(|(_, p)| p).collect();
-        if !born.is_empty() {
-            calls.add_all(&born, nodes, metric);
+        while let Some(&(birth, p)) = self.waiting.last()
+            && birth <= step
+        {
+            self.waiting.pop();
+            calls.add(p, nodes, metric);
         }
         if self.falls && !self.rests && !self.waits(age) {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();

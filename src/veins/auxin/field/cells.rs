@@ -5,8 +5,7 @@ use glam::DVec2;
 use super::NONE;
 use crate::geometry::Rect;
 
-/// Square cells over the blade, column by column: the slots that were sorted into each, and the newborn
-/// after them.
+/// Square cells over the blade: the slots that were sorted into each, and the newborn after them.
 #[derive(Debug)]
 pub(super) struct Cells {
     pub(super) min: DVec2,
@@ -49,7 +48,7 @@ impl Cells {
     }
 
     fn home(&self, p: DVec2) -> usize {
-        self.column(p.x) * self.rows + self.row(p.y)
+        self.row(p.y) * self.columns + self.column(p.x)
     }
 
     /// Adds a newborn.
@@ -85,14 +84,14 @@ impl Cells {
         order
     }
 
-    /// The first slot sorted into a column, or after the last column that of the newborn.
-    pub(super) fn first_of(&self, column: usize) -> usize {
-        self.starts[column * self.rows] as usize
+    /// The first slot sorted into a row, or after the last row that of the newborn.
+    pub(super) fn first_of(&self, row: usize) -> usize {
+        self.starts[row * self.columns] as usize
     }
 
-    /// The slots sorted into the cells of a column, from row to row.
-    pub(super) fn run(&self, column: usize, first: usize, last: usize) -> std::ops::Range<usize> {
-        let at = column * self.rows;
+    /// The slots sorted into the cells of a row, from column to column.
+    pub(super) fn run(&self, row: usize, first: usize, last: usize) -> std::ops::Range<usize> {
+        let at = row * self.columns;
         self.starts[at + first] as usize..self.starts[at + last + 1] as usize
     }
 
@@ -100,7 +99,7 @@ impl Cells {
     pub(super) fn newborn_in(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + '_ {
         let sorted = self.starts[self.columns * self.rows] as usize;
         let entry = |at: u32| (at != NONE).then_some(at);
-        let head = entry(self.heads[column * self.rows + row]);
+        let head = entry(self.heads[row * self.columns + column]);
         std::iter::successors(head, move |&at| entry(self.nexts[at as usize]))
             .map(move |at| sorted + at as usize)
     }

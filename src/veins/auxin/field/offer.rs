@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::cells::Cells;
 use super::{DEAD, Field, Hit, News, Source, Told};
@@ -41,11 +42,11 @@ impl Finds {
     }
 }
 
-/// Sources in consecutive slots: those sorted into some columns of cells, or the newborn.
+/// Sources in consecutive slots: those sorted into some rows of cells, or the newborn.
 struct Part<'a, S> {
     cells: &'a Cells,
     /// Empty for the newborn.
-    columns: Range<usize>,
+    rows: Range<usize>,
     first: usize,
     places: &'a [DVec2],
     bound2: &'a mut [f64],
@@ -66,9 +67,9 @@ struct Fresh<'a> {
 }
 
 impl<'a, S> Part<'a, S> {
-    /// Those up to a column, and the rest.
-    fn split(self, column: usize) -> (Self, Self) {
-        let slot = self.cells.first_of(column);
+    /// Those up to a row, and the rest.
+    fn split(self, row: usize) -> (Self, Self) {
+        let slot = self.cells.first_of(row);
         let at = slot - self.first;
         let (places, later_places) = self.places.split_at(at);
         let (bound2, later_bound2) = self.bound2.split_at_mut(at);
@@ -77,7 +78,7 @@ impl<'a, S> Part<'a, S> {
             self.far.split_at(self.far.partition_point(|&far| (far as usize) < slot));
         let after = Self {
             cells: self.cells,
-            columns: column..self.columns.end,
+            rows: row..self.rows.end,
             first: slot,
             places: later_places,
             bound2: later_bound2,
@@ -86,7 +87,7 @@ impl<'a, S> Part<'a, S> {
             finds: Finds::default(),
             news: News::default(),
         };
-        (Self { columns: self.columns.start..column, places, bound2, sources, far, ..self }, after)
+        (Self { rows: self.rows.start..row, places, bound2, sources, far, ..self }, after)
     }
 
     /// Tells the sources of the new nodes that matter to them.
@@ -125,7 +126,7 @@ impl<'a, S> Part<'a, S> {
         let limit2 = search * search;
         let (left, right) = (cells.column(p.x - reach.x), cells.column(p.x + reach.x));
         let (low, high) = (cells.row(p.y - reach.y), cells.row(p.y + reach.y));
-        if self.columns.is_empty() {
+        if self.rows.is_empty() {
             for row in low..=high {
                 for column in left..=right {
                     let newborn = cells.newborn_in(row, column);
@@ -134,8 +135,8 @@ impl<'a, S> Part<'a, S> {
             }
             return;
         }
-        for column in left.max(self.columns.start)..=right.min(self.columns.end - 1) {
-            let run = cells.run(column, low, high);
+        for row in low.max(self.rows.start)..=high.min(self.rows.end - 1) {
+            let run = cells.run(row, left, right);
             if metric.is_warped() {
                 run.for_each(|slot| self.look(slot, node, p, limit2, metric));
             } else {
@@ -202,16 +203,11 @@ impl<S: Copy + Send + Sync> Field<S> {
         let threads = if search.is_finite() { rayon::current_num_threads() } else { 1 };
         let (search, far) = self.bounded(search, fresh.len(), metric);
         let threads = threads.min(fresh.len() / a_thread).max(1);
-        let cuts = if threads > 1 {
-            self.shares.share_out(threads, fresh.iter().map(|p| self.cells.column(p.x)));
-            self.shares.cuts()
-        } else {
-            &[]
-        };
+        let rows = self.shared_rows(fresh, threads);
         let mut parts = Vec::with_capacity(threads + 1);
         let mut rest = Part {
             cells: &self.cells,
-            columns: 0..self.cells.columns,
+            rows: 0..self.cells.rows,
             first: 0,
             places: &self.places,
             bound2: &mut self.bound2,
@@ -220,8 +216,8 @@ impl<S: Copy + Send + Sync> Field<S> {
             finds: Finds::default(),
             news: News::default(),
         };
-        for column in cuts.iter().copied().chain([self.cells.columns]) {
-            let (part, later) = rest.split(column);
+        for row in rows.into_iter().chain([self.cells.rows]) {
+            let (part, later) = rest.split(row);
             parts.push(part);
             rest = later;
         }
@@ -231,8 +227,7 @@ impl<S: Copy + Send + Sync> Field<S> {
         }
         let fresh = Fresh { first, places: fresh, search, metric };
         if threads > 1 {
-            self.shares.each(&mut parts[..threads], |part| part.tell_all(fresh, &hear));
-            parts[threads].tell_all(fresh, &hear);
+            parts.par_iter_mut().for_each(|part| part.tell_all(fresh, &hear));
         } else {
             parts.iter_mut().for_each(|part| part.tell_all(fresh, &hear));
         }
@@ -244,6 +239,16 @@ impl<S: Copy + Send + Sync> Field<S> {
         }
         self.settle_news();
         std::mem::take(&mut self.news.marked)
+    }
+
+    /// The rows at which to cut the cells for so many threads, so that each has as many new nodes.
+    fn shared_rows(&self, fresh: &[DVec2], threads: usize) -> Vec<usize> {
+        if threads == 1 {
+            return Vec::new();
+        }
+        let mut rows: Vec<usize> = fresh.iter().map(|p| self.cells.row(p.y)).collect();
+        let cut = |i: usize| *rows.select_nth_unstable(i * fresh.len() / threads).1;
+        (1..threads).map(cut).collect()
     }
 
     /// Without a reach: a distance within which new nodes matter to nearly all sources, and the slots of

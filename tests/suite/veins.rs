@@ -195,6 +195,17 @@ fn attraction_without_limit_agrees_with_the_obvious_one_over_many_tiles() {
     }
 }
 
+fn grown_on(
+    threads: usize,
+    spec: &VeinSpec,
+    blade: &GrowingBlade,
+    start: &veins::VeinGraph,
+) -> auxin::Grown {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let mut rng = Seed(1).stream(Stage::AuxinSources);
+    pool.install(|| auxin::grow(spec, blade, start.clone(), &mut rng, &mut Silent)).expect("grows")
+}
+
 #[test]
 fn threads_show_nowhere_in_large_steps() {
     let growth = GrowthSpec {
@@ -218,18 +229,10 @@ fn threads_show_nowhere_in_large_steps() {
                     start.add_root(root);
                 }
             }
-            let grow = |threads: usize| {
-                let pool =
-                    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-                let mut rng = Seed(1).stream(Stage::AuxinSources);
-                pool.install(|| {
-                    auxin::grow(&workload.veins, &blade, start.clone(), &mut rng, &mut Silent)
-                })
-                .expect("grows")
-            };
+            let grow = |threads| grown_on(threads, &workload.veins, &blade, &start);
             let alone = grow(1);
             let widest = alone.nodes_after_step.windows(2).map(|w| w[1] - w[0]).max();
-            assert!(widest > Some(250), "steps have become too small: {widest:?}");
+            assert!(widest > Some(300), "steps have become too small: {widest:?}");
             for threads in [2, 5] {
                 assert!(grow(threads) == alone, "{algorithm} on {threads} threads");
             }
@@ -265,12 +268,7 @@ fn threads_show_nowhere_in_a_blade_too_narrow_to_be_shared_out() {
     for i in 1..600 {
         start.add_root(DVec2::new(0.0, 0.5 * f64::from(i)));
     }
-    let grow = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let mut rng = Seed(1).stream(Stage::AuxinSources);
-        pool.install(|| auxin::grow(&spec, &blade, start.clone(), &mut rng, &mut Silent))
-            .expect("grows")
-    };
+    let grow = |threads| grown_on(threads, &spec, &blade, &start);
     let alone = grow(1);
     assert!(alone.sources > 2000, "{} sources are too few to be shared out", alone.sources);
     assert!(grow(2) == alone && grow(3) == alone);

@@ -68,7 +68,7 @@ impl Blade<'_> {
     /// Bites arcs off the margin, one beside the other as a caterpillar does.
     pub(super) fn bites(&mut self, share: f64) {
         let outline = self.margin.outline().to_vec();
-        let length: f64 = polygon::edges(&outline).map(|(a, b)| a.distance(b)).sum();
+        let length = polygon::perimeter(&outline);
         let usual = 0.075 * self.breadth * (0.7 + 1.2 * share as f32);
         // A meal: where it goes on, and how many bites are left of it.
         let (mut place, mut left) = (0.0, 0);
@@ -107,15 +107,15 @@ impl Blade<'_> {
     /// and in which direction of some it would go farthest without crossing one.
     pub(super) fn tears(&mut self, count: usize) {
         let outline = self.margin.outline().to_vec();
-        let length: f64 = polygon::edges(&outline).map(|(a, b)| a.distance(b)).sum();
+        let length = polygon::perimeter(&outline);
         let step = self.lattice.spacing() * 1.5;
         for _ in 0..count {
             let wanted = f64::from(self.breadth * self.uniform(0.15, 0.45));
             let places: [f64; 4] = std::array::from_fn(|_| self.rng.between(0.0, length));
             let ways = places.into_iter().flat_map(|place| {
                 let (start, inward) = along(&outline, place);
-                let turned = move |tenths: i32| {
-                    let turn = DVec2::from_angle(0.18 * f64::from(tenths));
+                let turned = move |turns: i32| {
+                    let turn = DVec2::from_angle(0.18 * f64::from(turns));
                     (start, turn.rotate(inward))
                 };
                 (-6..=6).map(turned)

@@ -67,6 +67,8 @@ impl DamageSpec {
 pub(super) struct Injury {
     /// How far it has died (0–1).
     pub brown: f32,
+    /// How far what has died is walled off, dark with tannins (0–1).
+    pub dark: f32,
     /// How far only its skins are left (0–1).
     pub pale: f32,
 }
@@ -122,7 +124,7 @@ impl WoundAt {
     /// edges uneven, since disease and its eaters go from cell to cell.
     #[inline]
     pub(super) fn injury(&self, areole: f32, grain: f32, per_mm: f32) -> Injury {
-        let Injury { mut brown, mut pale } = self.injury;
+        let Injury { mut brown, mut dark, mut pale } = self.injury;
         brown += 1.4 * brown * (1.0 - brown) * (areole + 0.6 * grain);
         // Half a texel of softness, or as much as tissue has.
         let per_mm = per_mm.min(MOST_SHARP_PER_MM);
@@ -135,8 +137,9 @@ impl WoundAt {
         let spot = within(depth);
         let dry = smooth(0.12, 0.5, depth);
         brown = brown.max(spot * (1.0 - 0.5 * dry));
+        dark = dark.max(spot * (1.0 - smooth(0.1, 0.34, depth)));
         pale = pale.max(spot * dry);
-        Injury { brown: brown.clamp(0.0, 1.0), pale: pale.clamp(0.0, 1.0) }
+        Injury { brown: brown.clamp(0.0, 1.0), dark, pale: pale.clamp(0.0, 1.0) }
     }
 }
 
@@ -233,6 +236,7 @@ impl WoundRow<'_> {
             mine: [mine, frass],
             injury: Injury {
                 brown: brown.max(0.85 * rim * rim).clamp(0.0, 1.0),
+                dark: rim.powi(6),
                 pale: pale.clamp(0.0, 1.0),
             },
         }

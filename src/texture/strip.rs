@@ -93,7 +93,7 @@ pub(super) struct Strip {
     pub(super) blade: Lane,
     /// Season, chlorosis, death, as in [`Condition`].
     condition: [Lane; 3],
-    injured: [Lane; 2],
+    injured: [Lane; 3],
     /// Whether the petiole is here.
     pub(super) stalked: bool,
     pub(super) stalk: [StalkAt; LANES],
@@ -127,7 +127,7 @@ impl Strip {
             grain: zero,
             blade: zero,
             condition: [zero; 3],
-            injured: [zero; 2],
+            injured: [zero; 3],
             stalked: false,
             stalk: [StalkAt::default(); LANES],
             fibre: zero,
@@ -247,7 +247,9 @@ impl Strip {
                 self.blade[i] *= 1.0 - bare * (1.0 - kept);
                 injury.brown = injury.brown.max(0.55 * bare);
             }
-            (self.injured[0][i], self.injured[1][i]) = (injury.brown, injury.pale);
+            for (k, value) in [injury.brown, injury.dark, injury.pale].into_iter().enumerate() {
+                self.injured[k][i] = value;
+            }
         }
     }
 
@@ -312,7 +314,11 @@ impl Strip {
             grain: self.grain[i],
             from_base: (x * x + y * y).sqrt(),
             condition: Condition { season, chlorosis, death },
-            injury: Injury { brown: self.injured[0][i], pale: self.injured[1][i] },
+            injury: Injury {
+                brown: self.injured[0][i],
+                dark: self.injured[1][i],
+                pale: self.injured[2][i],
+            },
         }
     }
 

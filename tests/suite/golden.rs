@@ -83,6 +83,22 @@ pub(crate) fn leaf(document: &Document, seed: u64, size: usize) -> Leaf {
     pipeline::generate(&spec, Seed(seed), &mut Silent).expect("a leaf")
 }
 
+/// The fronts of one leaf, grown once, painted with each of these settings.
+fn paintings<S: AsRef<str>>(preset: &str, seed: u64, size: usize, all: &[Vec<S>]) -> Vec<Picture> {
+    let resolved = |settings: &[S]| {
+        let size = format!("texture.size_px={size}");
+        let settings: Vec<&str> =
+            settings.iter().map(AsRef::as_ref).chain([size.as_str()]).collect();
+        document(preset, &settings).resolve(Seed(seed)).expect("it resolves")
+    };
+    let grown = pipeline::grow(&resolved(&[]), Seed(seed), &mut Silent).expect("a leaf");
+    let front = |settings: &Vec<S>| {
+        let textures = pipeline::paint(&resolved(settings), &grown, Seed(seed), &mut Silent);
+        textures.expect("it can be painted").front.base_colour
+    };
+    all.iter().map(front).collect()
+}
+
 pub(crate) fn panel(picture: Picture, label: &str) -> Panel {
     Panel { picture, label: label.to_owned(), notes: Vec::new() }
 }
@@ -138,20 +154,22 @@ fn golden_presets_front_and_back() {
 #[test]
 fn golden_colour_types() {
     let types = [("uniform", 1.0), ("from-veins", 1.0), ("from-edges", 8.0), ("speckled", 2.5)];
-    let mut panels = Vec::new();
+    let (mut names, mut settings) = (Vec::new(), Vec::new());
     for model in ["pigments", "hsv"] {
         for (word, spread) in types {
-            let settings = [
-                &format!("colour.model={model}")[..],
-                &format!("colour.type={word}"),
-                &format!("colour.spread_mm={spread}"),
-                "colour.vein_spread=5",
-                "colour.speckle_count=160",
-            ];
-            let leaf = leaf(&document("lilac", &settings), 3, 512);
-            panels.push(panel(leaf.textures.front.base_colour, &format!("{model}, {word}")));
+            names.push(format!("{model}, {word}"));
+            settings.push(vec![
+                format!("colour.model={model}"),
+                format!("colour.type={word}"),
+                format!("colour.spread_mm={spread}"),
+                "colour.vein_spread=5".to_owned(),
+                "colour.speckle_count=160".to_owned(),
+            ]);
         }
     }
+    let pictures = paintings("lilac", 3, 512, &settings);
+    let panels: Vec<Panel> =
+        pictures.into_iter().zip(&names).map(|(picture, name)| panel(picture, name)).collect();
     compare("readme_colour", &sheet("colour types", &panels, 4, 384));
 }
 
@@ -174,14 +192,10 @@ fn golden_damage_of_an_oak() {
         "scorch=0.4",
         "tears=0.6",
     ];
-    let panels: Vec<Panel> = wounds
-        .iter()
-        .map(|wound| {
-            let settings = [&format!("damage.{wound}")[..]];
-            let leaf = leaf(&document("oak", &settings), 2, 512);
-            panel(leaf.textures.front.base_colour, wound)
-        })
-        .collect();
+    let settings = wounds.map(|wound| vec![format!("damage.{wound}")]);
+    let pictures = paintings("oak", 2, 512, &settings);
+    let panels: Vec<Panel> =
+        pictures.into_iter().zip(wounds).map(|(picture, wound)| panel(picture, wound)).collect();
     compare("readme_damage", &sheet("damage", &panels, 4, 384));
 }
 
@@ -311,8 +325,9 @@ fn golden_atlas() {
 fn golden_shapes_by_name() {
     // Garg 2011, tables 4.2 and 4.3.
     let folder = crate::support::fresh();
+    let smaller = ["--set", "margin.length_mm=40"];
     let arguments = ["compare", "beech", "--by", "shape", "--size", "160", "-o", "s.png"];
-    crate::support::succeed(folder.path(), &arguments);
+    crate::support::succeed(folder.path(), &[&arguments[..], &smaller].concat());
     compare("readme_shapes", &read(&folder.path().join("s.png")).expect("the sheet"));
 }
 

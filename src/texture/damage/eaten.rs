@@ -116,15 +116,17 @@ impl Blade<'_> {
                 let (start, inward) = along(&outline, place);
                 let turned = move |turns: i32| {
                     let turn = DVec2::from_angle(0.18 * f64::from(turns));
-                    (start, turn.rotate(inward))
+                    (start, turn.rotate(inward), turns.abs())
                 };
                 (-6..=6).map(turned)
             });
-            let clear =
-                |(start, heading)| (self.clear_way(start, heading, step, wanted), start, heading);
-            let (reach, start, heading) = ways
+            let clear = |(start, heading, turned)| {
+                (self.clear_way(start, heading, step, wanted), turned, start, heading)
+            };
+            // Of ways that go as far, the straightest inwards.
+            let (reach, _, start, heading) = ways
                 .map(clear)
-                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
                 .expect("there are ways from four places");
             if reach < SHORTEST_TEAR * f64::from(self.breadth) {
                 continue;

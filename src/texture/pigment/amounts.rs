@@ -100,6 +100,9 @@ type Mix = [f32; 5];
 const DEAD: Mix = [0.4, 3.0, 0.1, 1.6, 2.1];
 const MINED: Mix = [1.8, 2.2, 0.3, 0.12, 2.2];
 
+/// More brown where a plant has walled a wound off.
+const TANNIN: f32 = 3.0;
+
 /// A bloom is this white (sRGB).
 const BLOOM: f32 = 0.80;
 
@@ -315,7 +318,9 @@ impl Mixer {
         }
         mix = mixed(mix, DEAD, condition.death);
         mix = mixed(mix, MINED, tissue.injury.pale);
-        mixed(mix, DEAD, tissue.injury.brown)
+        mix = mixed(mix, DEAD, tissue.injury.brown);
+        mix[3] += TANNIN * tissue.injury.dark;
+        mix
     }
 
     /// Dead tissue rots from place to place: dark where it has gone far, paler and yellower where it has

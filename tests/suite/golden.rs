@@ -259,7 +259,7 @@ fn golden_leaves_in_outlines_from_files() {
 /// A sheet of the program's own.
 fn compare_sheet(name: &str, arguments: &[&str]) {
     let folder = crate::support::fresh();
-    let output = ["--size", "768", "-o", "s.png"];
+    let output = ["--size", "512", "-o", "s.png"];
     crate::support::succeed(folder.path(), &[&["compare"], arguments, &output].concat());
     compare(name, &read(&folder.path().join("s.png")).expect("the sheet"));
 }

@@ -400,6 +400,32 @@ fn skeletons_keep_their_veins_and_another_seed_wounds_elsewhere() {
 }
 
 #[test]
+fn spots_are_dry_within_a_dark_rim() {
+    let mut settings = Settings::of_size(512);
+    let whole = painted(&settings).front.base_colour;
+    settings.damage.spots = 1.0;
+    let spotted = painted(&settings).front.base_colour;
+    let light = |[r, g, b, _]: [u8; 4]| u32::from(r) + u32::from(g) + u32::from(b);
+    let is_brown = |[r, g, _, a]: [u8; 4]| a == 255 && r > g;
+    let (side, mut dry, mut rim) = (whole.width(), 0, 0);
+    for (x, y) in (2..side - 2).flat_map(|y| (2..side - 2).map(move |x| (x, y))) {
+        let (now, before) = (spotted[(x, y)], whole[(x, y)]);
+        if !is_brown(now) || before[3] < 255 {
+            continue;
+        }
+        rim += usize::from(light(now) < light(before));
+        if 10 * light(now) > 14 * light(before) {
+            dry += 1;
+            // Green tissue does not touch it: the rim lies between them.
+            for (i, j) in [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)] {
+                assert!(spotted[(i, j)][3] < 255 || is_brown(spotted[(i, j)]), "at {x}, {y}");
+            }
+        }
+    }
+    assert!(dry > 50 && rim > 50, "{dry} dry, {rim} in rims");
+}
+
+#[test]
 fn the_preview_is_lit_and_the_enhancement_has_six_steps() {
     let mut settings = Settings::of_size(64);
     let set = painted(&settings);

@@ -292,11 +292,18 @@ fn golden_net_with_every_areole() {
     let leaf = leaf(&document("beech", &settings), 3, 2048);
     let mask = &leaf.textures.front.vein_mask;
     let grey = |&v: &u8| [v, v, v, 255];
-    let (side, half) = (mask.width(), 320);
-    let (x, y) = (side / 2 - half, side / 3 - half);
-    let row = |y: usize| mask.row(y)[x..x + 2 * half].iter().map(grey);
-    let close = Grid::from_values(2 * half, 2 * half, (y..y + 2 * half).flat_map(row).collect());
-    let panels = [panel(mask.map(grey), "veins of a small beech leaf"), panel(close, "closer")];
+    let side = mask.width();
+    let square = |x: usize, y: usize, edge: usize| {
+        let row = |y: usize| mask.row(y)[x..x + edge].iter().map(grey);
+        Grid::from_values(edge, edge, (y..y + edge).flat_map(row).collect())
+    };
+    // No petiole has veins: the picture ends with the blade.
+    let veined = |&y: &usize| mask.row(y).iter().any(|&v| v > 0);
+    let last = (0..side).rfind(veined).expect("there are veins");
+    let edge = last + (0..side).find(veined).expect("there are veins");
+    let blade = square((side - edge) / 2, 0, edge);
+    let close = square(side / 2 - 320, side / 3 - 320, 640);
+    let panels = [panel(blade, "veins of a small beech leaf"), panel(close, "closer")];
     compare("readme_net", &sheet("", &panels, 2, 640));
 }
 

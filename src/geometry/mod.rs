@@ -12,6 +12,7 @@ pub mod minimise;
 pub mod noise;
 pub mod nurbs;
 pub mod packing;
+mod paving;
 pub mod point_cells;
 pub mod point_grid;
 pub mod point_index;

@@ -4,14 +4,11 @@
 //! (33 points on one straight midrib do not fit in a bucket) and takes 20–190 µs to add a point to a
 //! long chain of nodes; here it is 0.03 µs whatever the order.
 
-use super::rings::Size;
+use super::paving::Paving;
 use super::{DVec2, Rect};
 
 /// End of a list.
 const NONE: u32 = u32::MAX;
-
-/// More cells than this cost memory and time to clear; lists get longer instead.
-const MAX_CELLS: f64 = 4e6;
 
 /// Up to this many points looking at each is quicker than walking rings of empty cells.
 const FEW: usize = 24;
@@ -19,11 +16,7 @@ const FEW: usize = 24;
 /// Points in the cells of a grid, known by the order in which they came.
 #[derive(Debug, Clone)]
 pub struct PointGrid {
-    bounds: Rect,
-    cell: f64,
-    per_cell: f64,
-    columns: usize,
-    rows: usize,
+    paving: Paving,
     heads: Vec<u32>,
     nexts: Vec<u32>,
     points: Vec<DVec2>,
@@ -46,17 +39,13 @@ impl PointGrid {
     /// at the border.
     #[must_use]
     pub fn new(bounds: Rect, cell: f64) -> Self {
-        let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell = bounds.cell_width(cell, MAX_CELLS);
-        let count = |length: f64| (length / cell) as usize + 1;
-        let (columns, rows) = (count(size.x), count(size.y));
+        Self::over(Paving::new(bounds, cell))
+    }
+
+    fn over(paving: Paving) -> Self {
         Self {
-            bounds,
-            cell,
-            per_cell: 1.0 / cell,
-            columns,
-            rows,
-            heads: vec![NONE; columns * rows],
+            paving,
+            heads: vec![NONE; paving.len()],
             nexts: Vec::new(),
             points: Vec::new(),
             removed: 0,
@@ -81,22 +70,10 @@ impl PointGrid {
         self.points[id as usize]
     }
 
-    fn column(&self, x: f64) -> usize {
-        (((x - self.bounds.min.x) * self.per_cell).max(0.0) as usize).min(self.columns - 1)
-    }
-
-    fn row(&self, y: f64) -> usize {
-        (((y - self.bounds.min.y) * self.per_cell).max(0.0) as usize).min(self.rows - 1)
-    }
-
-    fn home(&self, p: DVec2) -> usize {
-        self.row(p.y) * self.columns + self.column(p.x)
-    }
-
     /// Adds a point.
     pub fn push(&mut self, p: DVec2) -> u32 {
         let id = self.points.len() as u32;
-        let home = self.home(p);
+        let home = self.paving.home(p);
         self.points.push(p);
         self.nexts.push(self.heads[home]);
         self.heads[home] = id;
@@ -105,7 +82,7 @@ impl PointGrid {
 
     /// Takes a point out of every later search; its number stays taken.
     pub fn remove(&mut self, id: u32) {
-        let home = self.home(self.points[id as usize]);
+        let home = self.paving.home(self.points[id as usize]);
         let after = self.nexts[id as usize];
         if self.heads[home] == id {
             self.heads[home] = after;
@@ -128,10 +105,8 @@ impl PointGrid {
     /// with a growing leaf stay short.
     pub fn refine(&mut self, cell: f64) {
         // Asked in every step: memory for finer cells is taken only where they come.
-        if cell * 2.0 >= self.cell || self.bounds.cell_width(cell, MAX_CELLS) * 2.0 > self.cell {
-            return;
-        }
-        let mut finer = Self::new(self.bounds, cell);
+        let Some(paving) = self.paving.finer(cell) else { return };
+        let mut finer = Self::over(paving);
         let mut present = vec![false; self.points.len()];
         for cell in 0..self.heads.len() {
             self.list(cell).for_each(|id| present[id as usize] = true);
@@ -140,7 +115,7 @@ impl PointGrid {
         finer.nexts = vec![NONE; finer.points.len()];
         finer.removed = self.removed;
         for id in (0..finer.points.len()).filter(|&id| present[id]) {
-            let home = finer.home(finer.points[id]);
+            let home = finer.paving.home(finer.points[id]);
             finer.nexts[id] = finer.heads[home];
             finer.heads[home] = id as u32;
         }
@@ -160,10 +135,11 @@ impl PointGrid {
         half: DVec2,
         mut test: impl FnMut(u32, DVec2) -> bool,
     ) -> bool {
-        let (first, last) = (self.column(p.x - half.x), self.column(p.x + half.x));
-        for row in self.row(p.y - half.y)..=self.row(p.y + half.y) {
+        let Self { paving, .. } = self;
+        let (first, last) = (paving.column(p.x - half.x), paving.column(p.x + half.x));
+        for row in paving.row(p.y - half.y)..=paving.row(p.y + half.y) {
             for column in first..=last {
-                let mut id = self.heads[row * self.columns + column];
+                let mut id = self.heads[paving.at(column, row)];
                 while id != NONE {
                     if test(id, self.points[id as usize]) {
                         return true;
@@ -190,14 +166,15 @@ impl PointGrid {
             }
             return;
         }
-        let size = Size { columns: self.columns, rows: self.rows };
-        let centre = (self.column(p.x), self.row(p.y));
+        let Self { paving, .. } = self;
+        let size = paving.size;
+        let centre = (paving.column(p.x), paving.row(p.y));
         for ring in 0..=size.last_ring() {
-            if ring > 0 && !more(state, (ring - 1) as f64 * self.cell) {
+            if ring > 0 && !more(state, (ring - 1) as f64 * paving.cell) {
                 return;
             }
             size.for_each_in_ring(centre, ring, |column, row| {
-                for id in self.list(row * self.columns + column) {
+                for id in self.list(paving.at(column, row)) {
                     visit(state, id, self.points[id as usize]);
                 }
             });

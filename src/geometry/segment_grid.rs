@@ -4,22 +4,16 @@
 //! listed in the cells it passes through, so that a long one is found from everywhere along it. The
 //! grid knows numbers only; whoever asks knows where the ends are.
 
+use super::paving::Paving;
 use super::{DVec2, Rect};
 
 /// End of a list.
 const NONE: u32 = u32::MAX;
 
-/// More cells than this cost memory and time to clear; lists get longer instead.
-const MAX_CELLS: f64 = 4e6;
-
 /// Segments in the cells of a grid, known by the order in which they came.
 #[derive(Debug, Clone)]
 pub struct SegmentGrid {
-    bounds: Rect,
-    cell: f64,
-    per_cell: f64,
-    columns: usize,
-    rows: usize,
+    paving: Paving,
     heads: Vec<u32>,
     /// Lists of segments: a number and the next entry.
     entries: Vec<(u32, u32)>,
@@ -31,32 +25,23 @@ impl SegmentGrid {
     /// the border.
     #[must_use]
     pub fn new(bounds: Rect, cell: f64) -> Self {
-        let size = bounds.size().max(DVec2::splat(f64::MIN_POSITIVE));
-        let cell = bounds.cell_width(cell, MAX_CELLS);
-        let count = |length: f64| (length / cell) as usize + 1;
-        let (columns, rows) = (count(size.x), count(size.y));
-        let heads = vec![NONE; columns * rows];
-        let per_cell = 1.0 / cell;
-        Self { bounds, cell, per_cell, columns, rows, heads, entries: Vec::new(), len: 0 }
+        Self::over(Paving::new(bounds, cell))
     }
 
-    fn column(&self, x: f64) -> usize {
-        (((x - self.bounds.min.x) * self.per_cell).max(0.0) as usize).min(self.columns - 1)
-    }
-
-    fn row(&self, y: f64) -> usize {
-        (((y - self.bounds.min.y) * self.per_cell).max(0.0) as usize).min(self.rows - 1)
+    fn over(paving: Paving) -> Self {
+        Self { paving, heads: vec![NONE; paving.len()], entries: Vec::new(), len: 0 }
     }
 
     /// Adds the segment a–b.
     pub fn push(&mut self, a: DVec2, b: DVec2) -> u32 {
         let id = self.len;
         self.len += 1;
-        let (first, last) = (self.row(a.y.min(b.y)), self.row(a.y.max(b.y)));
+        let paving = self.paving;
+        let (first, last) = (paving.row(a.y.min(b.y)), paving.row(a.y.max(b.y)));
         for row in first..=last {
             let (low, high) = self.span(a, b, row, first..=last);
-            for column in self.column(low)..=self.column(high) {
-                let head = &mut self.heads[row * self.columns + column];
+            for column in paving.column(low)..=paving.column(high) {
+                let head = &mut self.heads[paving.at(column, row)];
                 self.entries.push((id, *head));
                 *head = self.entries.len() as u32 - 1;
             }
@@ -79,10 +64,11 @@ impl SegmentGrid {
             return (low, high);
         }
         let at = |y: f64| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)).clamp(0.0, 1.0);
-        let bottom = self.bounds.min.y + row as f64 * self.cell;
+        let cell = self.paving.cell;
+        let bottom = self.paving.bounds.min.y + row as f64 * cell;
         let below = if row == *rows.start() { a.y.min(b.y) } else { bottom };
-        let above = if row == *rows.end() { a.y.max(b.y) } else { bottom + self.cell };
-        let (p, q, slack) = (at(below), at(above), 1e-6 * self.cell);
+        let above = if row == *rows.end() { a.y.max(b.y) } else { bottom + cell };
+        let (p, q, slack) = (at(below), at(above), 1e-6 * cell);
         ((p.min(q) - slack).max(low), (p.max(q) + slack).min(high))
     }
 
@@ -90,10 +76,8 @@ impl SegmentGrid {
     /// are.
     pub fn refine(&mut self, cell: f64, ends: impl Fn(u32) -> (DVec2, DVec2)) {
         // Asked in every step: memory for finer cells is taken only where they come.
-        if cell * 2.0 >= self.cell || self.bounds.cell_width(cell, MAX_CELLS) * 2.0 > self.cell {
-            return;
-        }
-        let mut finer = Self::new(self.bounds, cell);
+        let Some(paving) = self.paving.finer(cell) else { return };
+        let mut finer = Self::over(paving);
         for id in 0..self.len {
             let (a, b) = ends(id);
             finer.push(a, b);
@@ -103,10 +87,11 @@ impl SegmentGrid {
 
     /// Calls `visit` with every segment in the cells that the box of a–b touches, some more than once.
     pub fn for_each_near(&self, a: DVec2, b: DVec2, mut visit: impl FnMut(u32)) {
-        let (first, last) = (self.column(a.x.min(b.x)), self.column(a.x.max(b.x)));
-        for row in self.row(a.y.min(b.y))..=self.row(a.y.max(b.y)) {
+        let Self { paving, .. } = self;
+        let (first, last) = (paving.column(a.x.min(b.x)), paving.column(a.x.max(b.x)));
+        for row in paving.row(a.y.min(b.y))..=paving.row(a.y.max(b.y)) {
             for column in first..=last {
-                let mut at = self.heads[row * self.columns + column];
+                let mut at = self.heads[paving.at(column, row)];
                 while at != NONE {
                     let (id, next) = self.entries[at as usize];
                     visit(id);

@@ -28,9 +28,8 @@ impl Paving {
 
     /// Cells of about `cell` over the same box, when that is less than half of their width now.
     pub(super) fn finer(&self, cell: f64) -> Option<Self> {
-        let is_finer = |cell: f64| cell * 2.0 < self.cell;
-        (is_finer(cell) && self.bounds.cell_width(cell, MAX_CELLS) * 2.0 <= self.cell)
-            .then(|| Self::new(self.bounds, cell))
+        let is_allowed = self.bounds.cell_width(cell, MAX_CELLS) * 2.0 <= self.cell;
+        (is_allowed && cell * 2.0 < self.cell).then(|| Self::new(self.bounds, cell))
     }
 
     /// Number of cells.

@@ -93,7 +93,7 @@ pub(super) struct Strip {
     pub(super) blade: Lane,
     /// Season, chlorosis, death, as in [`Condition`].
     condition: [Lane; 3],
-    injured: [Lane; 3],
+    injured: [Injury; LANES],
     /// Whether the petiole is here.
     pub(super) stalked: bool,
     pub(super) stalk: [StalkAt; LANES],
@@ -127,7 +127,7 @@ impl Strip {
             grain: zero,
             blade: zero,
             condition: [zero; 3],
-            injured: [zero; 3],
+            injured: [Injury::default(); LANES],
             stalked: false,
             stalk: [StalkAt::default(); LANES],
             fibre: zero,
@@ -247,9 +247,7 @@ impl Strip {
                 self.blade[i] *= 1.0 - bare * (1.0 - kept);
                 injury.brown = injury.brown.max(0.55 * bare);
             }
-            for (k, value) in [injury.brown, injury.dark, injury.pale].into_iter().enumerate() {
-                self.injured[k][i] = value;
-            }
+            self.injured[i] = injury;
         }
     }
 
@@ -314,11 +312,7 @@ impl Strip {
             grain: self.grain[i],
             from_base: (x * x + y * y).sqrt(),
             condition: Condition { season, chlorosis, death },
-            injury: Injury {
-                brown: self.injured[0][i],
-                dark: self.injured[1][i],
-                pale: self.injured[2][i],
-            },
+            injury: self.injured[i],
         }
     }
 
@@ -326,7 +320,7 @@ impl Strip {
     #[inline(always)]
     pub(super) fn dryness(&self, i: usize) -> f32 {
         let [season, chlorosis, death] = [0, 1, 2].map(|k| self.condition[k][i]);
-        Condition { season, chlorosis, death }.dryness().max(self.injured[0][i])
+        Condition { season, chlorosis, death }.dryness().max(self.injured[i].brown)
     }
 
     /// How much of a texel is vein; none where nothing of the leaf is seen.

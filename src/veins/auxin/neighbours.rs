@@ -26,6 +26,10 @@ use crate::veins::graph::NodeId;
 /// Sixths of the circle.
 pub(super) const SECTORS: usize = 6;
 
+/// Of each sixth, the others in which nodes may stand in each other's way: those within 90 degrees, so never
+/// the opposite one.
+const BESIDE: [u8; SECTORS] = [0b11_0110, 0b10_1101, 0b01_1011, 0b11_0110, 0b10_1101, 0b01_1011];
+
 /// The nearest node in each sixth of the circle around a source.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Around {
@@ -132,37 +136,34 @@ impl Around {
         metric: Metric,
     ) {
         let here = sector(metric.between(s, p));
-        // What stands in the way is within 90 degrees: never in the opposite sixth.
-        let others = [1, 2, 4, 5].map(|turn| (here + turn) % SECTORS);
-        let mut in_doubt = false;
-        let mut shielded = false;
-        for k in others {
+        // A bit for each sixth whose node is nearer, or in which one may stand that was left out; found
+        // without a jump, which could not be foretold.
+        let (mut nearer, mut present) = (0_u8, 0_u8);
+        for k in 0..SECTORS {
             let (other2, other) = (self.near2[k], self.nodes[k]);
-            if other == NONE {
-                // One may stand there that was left out.
-                in_doubt |= other2 < distance2;
-                continue;
-            }
-            let other_is_nearer = (other2, other) < (distance2, node);
-            if !other_is_nearer && !self.is_neighbour(k) {
-                continue;
-            }
-            let between2 = metric.distance_squared(p, nodes.position(other));
-            if other_is_nearer {
-                shielded |= between2 < distance2;
-                in_doubt = true;
-            } else if between2 < other2 {
-                self.neighbours &= !(1 << k);
-            }
+            let is_nearer = (other2 < distance2) | ((other2 == distance2) & (other < node));
+            nearer |= u8::from(is_nearer) << k;
+            present |= u8::from(other != NONE) << k;
         }
-        if (self.near2[here], self.nodes[here]) <= (distance2, node) {
-            return;
+        let between2 = |k: usize| metric.distance_squared(p, nodes.position(self.nodes[k]));
+        // What stands in the way of others, and what is in its way.
+        let beside = BESIDE[here];
+        let mut shielded = 0;
+        for k in sectors(!nearer & beside & present & self.neighbours) {
+            shielded |= u8::from(between2(k) < self.near2[k]) << k;
         }
         let bit = 1 << here;
+        if nearer & bit > 0 || self.nodes[here] == node {
+            self.neighbours &= !shielded;
+            return;
+        }
+        let is_shielded = sectors(nearer & beside & present).any(|k| between2(k) < distance2);
+        let in_doubt = nearer & beside > 0;
+        self.neighbours &= !shielded;
         (self.near2[here], self.nodes[here]) = (distance2, node);
         self.clear &= !bit;
         self.hidden &= !bit;
-        if shielded || (in_doubt && nodes.stands_between(s, node, distance2, metric)) {
+        if is_shielded || (in_doubt && nodes.stands_between(s, node, distance2, metric)) {
             self.neighbours &= !bit;
         } else {
             self.neighbours |= bit;
@@ -203,16 +204,19 @@ fn shaded_from2(r: DVec2, ray: DVec2) -> f64 {
     (bisector * bisector).max(distance2) * SLACK
 }
 
+/// The sixths of a set.
+fn sectors(set: u8) -> impl Iterator<Item = usize> {
+    let lowest = |left: u8| (left > 0).then_some(left);
+    std::iter::successors(lowest(set), move |&left| lowest(left & (left - 1)))
+        .map(|left| left.trailing_zeros() as usize)
+}
+
 /// The sixth of the circle that a vector points into.
 fn sector(v: DVec2) -> usize {
     const TAN_60: f64 = 1.732_050_807_568_877_2;
-    let steep = v.y.abs() > TAN_60 * v.x.abs();
-    match (v.y >= 0.0, steep, v.x > 0.0) {
-        (true, true, _) => 1,
-        (true, false, true) => 0,
-        (true, false, false) => 2,
-        (false, true, _) => 4,
-        (false, false, true) => 5,
-        (false, false, false) => 3,
-    }
+    // By whether it points up, steeply, and to the right: a jump could not be foretold.
+    const SIXTHS: [u8; 8] = [3, 5, 4, 4, 2, 0, 1, 1];
+    let is_steep = v.y.abs() > TAN_60 * v.x.abs();
+    let at = usize::from(v.y >= 0.0) << 2 | usize::from(is_steep) << 1 | usize::from(v.x > 0.0);
+    usize::from(SIXTHS[at])
 }

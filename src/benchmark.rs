@@ -107,16 +107,19 @@ pub fn standard_workload(sources: usize, seed: Seed) -> Workload {
     let least = 0.7 * spacing;
     let scatter = PolygonScatter::new(margin.outline());
     let mut grid = PointGrid::new(margin.bounds(), least);
+    let mut places = Vec::with_capacity(sources);
     let mut rng = seed.stream(Stage::AuxinSources);
-    while grid.len() < sources {
+    while places.len() < sources {
         let p = scatter.point(rng.unit(), rng.unit());
         let near = |_, q: DVec2| p.distance_squared(q) < least * least;
-        if polygon::contains(margin.outline(), p) && !grid.any_near(p, DVec2::splat(least), near) {
+        if polygon::contains(margin.outline(), p)
+            && !grid.any_near(&places, p, DVec2::splat(least), near)
+        {
             grid.push(p);
+            places.push(p);
         }
     }
-    let places = (0..sources as u32).map(|i| grid.point(i));
-    Workload::new(margin, DVec2::new(0.0, 0.005) * LENGTH_MM, spacing, places)
+    Workload::new(margin, DVec2::new(0.0, 0.005) * LENGTH_MM, spacing, places.into_iter())
 }
 
 impl Workload {

@@ -7,6 +7,12 @@ use rayon::Yield;
 /// More threads find nothing to do in one leaf.
 const MOST: usize = 4;
 
+/// Among how many threads the work of one leaf is shared out.
+#[must_use]
+pub fn hands() -> usize {
+    rayon::current_num_threads().min(MOST)
+}
+
 /// Runs `work` while the other threads of the current rayon pool look for pieces of it without falling
 /// asleep.
 ///
@@ -25,7 +31,7 @@ pub fn awake<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     let is_done = AtomicBool::new(false);
     rayon::scope(|scope| {
         let done = Done(&is_done);
-        for _ in 1..rayon::current_num_threads().min(MOST) {
+        for _ in 1..hands() {
             scope.spawn(|_| {
                 while !is_done.load(Ordering::Acquire) {
                     if rayon::yield_now() != Some(Yield::Executed) {

@@ -2,7 +2,8 @@
 //!
 //! Dense cells with a linked list each. Not kiddo's mutable tree, which refuses ordinary leaf data
 //! (33 points on one straight midrib do not fit in a bucket) and takes 20–190 µs to add a point to a
-//! long chain of nodes; here it is 0.03 µs whatever the order.
+//! long chain of nodes; here it is 0.03 µs whatever the order. The grid knows numbers only; whoever asks
+//! knows where the points are, so that what is kept of them elsewhere stands in memory once.
 
 use super::paving::Paving;
 use super::{DVec2, Rect};
@@ -19,7 +20,6 @@ pub struct PointGrid {
     paving: Paving,
     heads: Vec<u32>,
     nexts: Vec<u32>,
-    points: Vec<DVec2>,
     removed: usize,
 }
 
@@ -43,46 +43,38 @@ impl PointGrid {
     }
 
     fn over(paving: Paving) -> Self {
-        Self {
-            paving,
-            heads: vec![NONE; paving.len()],
-            nexts: Vec::new(),
-            points: Vec::new(),
-            removed: 0,
-        }
+        Self { paving, heads: vec![NONE; paving.len()], nexts: Vec::new(), removed: 0 }
     }
 
     /// Number of points ever added.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.points.len()
+        self.nexts.len()
     }
 
     /// Whether no point was ever added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
+        self.nexts.is_empty()
     }
 
-    /// Where a point is.
-    #[must_use]
-    pub fn point(&self, id: u32) -> DVec2 {
-        self.points[id as usize]
+    /// Makes room for so many more points.
+    pub fn expect(&mut self, more: usize) {
+        self.nexts.reserve(more);
     }
 
     /// Adds a point.
     pub fn push(&mut self, p: DVec2) -> u32 {
-        let id = self.points.len() as u32;
+        let id = self.nexts.len() as u32;
         let home = self.paving.home(p);
-        self.points.push(p);
         self.nexts.push(self.heads[home]);
         self.heads[home] = id;
         id
     }
 
-    /// Takes a point out of every later search; its number stays taken.
-    pub fn remove(&mut self, id: u32) {
-        let home = self.paving.home(self.points[id as usize]);
+    /// Takes the point at `p` out of every later search; its number stays taken.
+    pub fn remove(&mut self, id: u32, p: DVec2) {
+        let home = self.paving.home(p);
         let after = self.nexts[id as usize];
         if self.heads[home] == id {
             self.heads[home] = after;
@@ -103,19 +95,18 @@ impl PointGrid {
 
     /// Makes cells smaller when `cell` is less than half of theirs, so that searches which shrink
     /// with a growing leaf stay short.
-    pub fn refine(&mut self, cell: f64) {
+    pub fn refine(&mut self, cell: f64, points: &[DVec2]) {
         // Asked in every step: memory for finer cells is taken only where they come.
         let Some(paving) = self.paving.finer(cell) else { return };
         let mut finer = Self::over(paving);
-        let mut present = vec![false; self.points.len()];
+        let mut present = vec![false; self.len()];
         for cell in 0..self.heads.len() {
             self.list(cell).for_each(|id| present[id as usize] = true);
         }
-        finer.points = std::mem::take(&mut self.points);
-        finer.nexts = vec![NONE; finer.points.len()];
+        finer.nexts = vec![NONE; self.len()];
         finer.removed = self.removed;
-        for id in (0..finer.points.len()).filter(|&id| present[id]) {
-            let home = finer.paving.home(finer.points[id]);
+        for id in (0..self.len()).filter(|&id| present[id]) {
+            let home = finer.paving.home(points[id]);
             finer.nexts[id] = finer.heads[home];
             finer.heads[home] = id as u32;
         }
@@ -131,6 +122,7 @@ impl PointGrid {
     /// touches.
     pub fn any_near(
         &self,
+        points: &[DVec2],
         p: DVec2,
         half: DVec2,
         mut test: impl FnMut(u32, DVec2) -> bool,
@@ -141,7 +133,7 @@ impl PointGrid {
             for column in first..=last {
                 let mut id = self.heads[paving.at(column, row)];
                 while id != NONE {
-                    if test(id, self.points[id as usize]) {
+                    if test(id, points[id as usize]) {
                         return true;
                     }
                     id = self.nexts[id as usize];
@@ -155,13 +147,14 @@ impl PointGrid {
     /// `more` says that points farther than a distance (in the grid's own frame) still matter.
     pub fn for_each_outwards<T>(
         &self,
+        points: &[DVec2],
         state: &mut T,
         p: DVec2,
         mut more: impl FnMut(&mut T, f64) -> bool,
         mut visit: impl FnMut(&mut T, u32, DVec2),
     ) {
-        if self.points.len() <= FEW && self.removed == 0 {
-            for (id, &q) in self.points.iter().enumerate() {
+        if self.len() <= FEW && self.removed == 0 {
+            for (id, &q) in points[..self.len()].iter().enumerate() {
                 visit(state, id as u32, q);
             }
             return;
@@ -175,7 +168,7 @@ impl PointGrid {
             }
             size.for_each_in_ring(centre, ring, |column, row| {
                 for id in self.list(paving.at(column, row)) {
-                    visit(state, id, self.points[id as usize]);
+                    visit(state, id, points[id as usize]);
                 }
             });
         }
@@ -184,10 +177,17 @@ impl PointGrid {
     /// The point nearest to `p` within a squared distance of `limit2` (included), where distances
     /// are |(a − b)·stretch|.
     #[must_use]
-    pub fn nearest(&self, p: DVec2, stretch: DVec2, limit2: f64) -> Option<Nearest> {
+    pub fn nearest(
+        &self,
+        points: &[DVec2],
+        p: DVec2,
+        stretch: DVec2,
+        limit2: f64,
+    ) -> Option<Nearest> {
         let mut best = Nearest { id: NONE, distance2: limit2, others2: limit2 };
         let least = stretch.min_element();
         self.for_each_outwards(
+            points,
             &mut best,
             p,
             |best, clear| (clear * least) * (clear * least) <= best.others2,
@@ -214,14 +214,16 @@ mod tests {
         let mut rng = Seed(4).stream(Stage::Tissue);
         let mut grid = PointGrid::new(Rect { min: DVec2::ZERO, max: DVec2::ONE }, 0.3);
         let mut present = vec![true; 400];
-        for i in 0..400 {
-            grid.push(DVec2::new(rng.unit(), rng.unit() * rng.unit()));
+        let mut points = Vec::new();
+        for i in 0..400_u32 {
+            points.push(DVec2::new(rng.unit(), rng.unit() * rng.unit()));
+            grid.push(points[i as usize]);
             if i % 5 == 4 {
-                grid.remove(i - 2);
+                grid.remove(i - 2, points[i as usize - 2]);
                 present[i as usize - 2] = false;
             }
             if i == 200 {
-                grid.refine(0.05);
+                grid.refine(0.05, &points);
             }
         }
         for stretch in [DVec2::ONE, DVec2::new(0.4, 1.0)] {
@@ -230,19 +232,20 @@ mod tests {
                 let limit2 = rng.unit() * 0.1;
                 let mut all: Vec<(f64, u32)> = (0..400u32)
                     .filter(|&i| present[i as usize])
-                    .map(|i| (((p - grid.point(i)) * stretch).length_squared(), i))
+                    .map(|i| (((p - points[i as usize]) * stretch).length_squared(), i))
                     .filter(|&(d2, _)| d2 <= limit2)
                     .collect();
                 all.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
-                let found = grid.nearest(p, stretch, limit2);
+                let found = grid.nearest(&points, p, stretch, limit2);
                 assert_eq!(found.map(|n| (n.distance2, n.id)), all.first().copied());
                 if let Some(found) = found {
                     let second = all.get(1).map_or(limit2, |other| other.0);
                     assert!(found.others2 <= second && found.others2 >= found.distance2);
                 }
                 let radius = 0.1;
-                let near = |i: u32| present[i as usize] && p.distance(grid.point(i)) <= radius;
-                let any = grid.any_near(p, DVec2::splat(radius), |_, q| p.distance(q) <= radius);
+                let near = |i: u32| present[i as usize] && p.distance(points[i as usize]) <= radius;
+                let any =
+                    grid.any_near(&points, p, DVec2::splat(radius), |_, q| p.distance(q) <= radius);
                 assert_eq!(any, (0..400).any(near));
             }
         }

@@ -32,6 +32,11 @@ impl SegmentGrid {
         Self { paving, heads: vec![NONE; paving.len()], entries: Vec::new(), len: 0 }
     }
 
+    /// Makes room for so many more segments, about as long as a cell.
+    pub fn expect(&mut self, more: usize) {
+        self.entries.reserve(2 * more);
+    }
+
     /// Adds the segment a–b.
     pub fn push(&mut self, a: DVec2, b: DVec2) -> u32 {
         let id = self.len;

@@ -65,6 +65,12 @@ impl VeinGraph {
         Self::default()
     }
 
+    /// Makes room for so many more nodes.
+    pub fn reserve(&mut self, more: usize) {
+        self.positions.reserve(more);
+        self.parents.reserve(more);
+    }
+
     /// Adds a root at the petiole.
     pub fn add_root(&mut self, position: DVec2) -> NodeId {
         let id = self.positions.len() as NodeId;

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::calls::Calls;
+use super::calls::Round;
 use super::field::Field;
 use super::nodes::Nodes;
 use crate::growth::{GrowingBlade, Metric};
@@ -18,6 +18,11 @@ pub(super) trait Callers {
     /// Sources that are left.
     fn living(&self) -> usize;
 
+    /// Adds sources.
+    fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
+        places.iter().for_each(|&p| self.add(p, nodes, metric));
+    }
+
     /// Adds a source.
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric);
 
@@ -28,25 +33,7 @@ pub(super) trait Callers {
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes);
 
     /// The calls of this step.
-    fn calls(&self) -> &Calls;
-
-    /// Where a living source is.
-    fn place(&self, source: u32) -> DVec2;
-
-    /// The unit vectors towards the callers of a called node, by their ids.
-    fn units(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> Vec<DVec2> {
-        let from = nodes.position(node);
-        self.calls().callers(node).map(|source| unit(from, self.place(source), metric)).collect()
-    }
-
-    /// The unit vector towards the nearest caller, the first among equals.
-    fn unit_to_nearest(&self, node: NodeId, nodes: &Nodes, metric: Metric) -> DVec2 {
-        let from = nodes.position(node);
-        let distance2 = |source: &u32| metric.distance_squared(self.place(*source), from);
-        let nearest =
-            self.calls().callers(node).min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
-        nearest.map_or(DVec2::ZERO, |source| unit(from, self.place(source), metric))
-    }
+    fn calls(&self) -> &Round;
 
     /// Tells the sources of the nodes from `before` on and removes those that are done with; the ids
     /// of the dead.
@@ -66,12 +53,6 @@ pub(super) trait Callers {
 
     /// The sources that are left, and why.
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached;
-}
-
-/// The unit vector from a node to a source.
-pub(super) fn unit(node: DVec2, source: DVec2, metric: Metric) -> DVec2 {
-    let towards = metric.between(node, source);
-    towards / towards.length_squared().sqrt()
 }
 
 /// How far nodes matter to sources, in lengths of the blade.

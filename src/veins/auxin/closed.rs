@@ -17,10 +17,11 @@ mod reached;
 mod states;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::NONE;
 use super::callers::{self, Callers, Ranges};
-use super::calls::Calls;
+use super::calls::Round;
 use super::field::Field;
 use super::horizon::Horizon;
 use super::neighbours::{Around, SECTORS};
@@ -30,11 +31,14 @@ use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
 
+/// So many sources are born at once: memory.
+const A_BIRTH: usize = 1 << 14;
+
 /// A tagged source waits this many times as long as its farthest vein would need.
 const PATIENCE: f64 = 2.0;
 
 /// The veins that a source waits for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Tag {
     veins: [NodeId; SECTORS],
     last_step: u64,
@@ -53,7 +57,7 @@ pub(super) struct Sources {
     field: Field<State>,
     horizon: Horizon,
     ranges: Ranges,
-    calls: Calls,
+    round: Round,
     /// What sources that call find out, by thread.
     answers: Vec<calling::Answers>,
     tags: Vec<Tag>,
@@ -72,7 +76,7 @@ impl Sources {
             field: Field::new(blade.mature().bounds()),
             horizon: Horizon::new(blade.mature().outline()),
             ranges: Ranges::new(spec),
-            calls: Calls::default(),
+            round: Round::default(),
             answers: Vec::new(),
             tags: Vec::new(),
             free_tags: Vec::new(),
@@ -83,16 +87,7 @@ impl Sources {
         }
     }
 
-    /// Whether a source sees its neighbour in a sixth.
-    fn sees(&mut self, i: usize, k: usize, node: NodeId, at: At<'_>) -> bool {
-        let sight = self.sight(&self.field.state(i).around, self.field.place(i), (k, node), at);
-        if sight.is_lasting {
-            self.field.state_mut(i).around.set_sight(k, sight.is_clear);
-        }
-        sight.is_clear
-    }
-
-    /// The same of a source at `p` with these neighbours.
+    /// Whether a source at `p` sees its neighbour in a sixth.
     fn sight(&self, around: &Around, p: DVec2, (k, node): (usize, NodeId), at: At<'_>) -> Sight {
         if self.convex {
             return Sight { is_clear: true, is_lasting: false };
@@ -107,6 +102,17 @@ impl Sources {
         // The blade only gains tissue: what is clear stays clear.
         let is_clear = !at.blade.blocks_sight_yet(p, q, at.step);
         Sight { is_clear, is_lasting: is_clear }
+    }
+
+    /// Adds a source with what it knows.
+    fn bear(&mut self, p: DVec2, around: Around, metric: Metric) {
+        let least2 = around.least2();
+        let state = State { around, tag: NONE };
+        let is_acting = least2.is_finite() || self.warps;
+        let id = self.field.add(p, around.most2(), is_acting, state);
+        if least2 <= self.ranges.kill2(metric) {
+            self.reached.push(id);
+        }
     }
 
     /// The same sources in open venation.
@@ -152,16 +158,23 @@ impl Callers for Sources {
         self.field.living()
     }
 
+    fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
+        self.horizon.follow(metric);
+        self.field.expect(places.len());
+        for places in places.chunks(A_BIRTH) {
+            let look_around = |&p: &DVec2| self.look_around(p, nodes, metric);
+            let arounds: Vec<Around> =
+                places.par_iter().with_min_len(calling::A_THREAD).map(look_around).collect();
+            for (&p, around) in places.iter().zip(arounds) {
+                self.bear(p, around, metric);
+            }
+        }
+    }
+
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
         self.horizon.follow(metric);
         let around = self.look_around(p, nodes, metric);
-        let least2 = around.least2();
-        let state = State { around, tag: NONE };
-        let is_acting = least2.is_finite() || self.warps;
-        let id = self.field.add(p, around.most2(), is_acting, state);
-        if least2 <= self.ranges.kill2(metric) {
-            self.reached.push(id);
-        }
+        self.bear(p, around, metric);
     }
 
     fn keep_order(&mut self, metric: Metric) {
@@ -169,17 +182,12 @@ impl Callers for Sources {
     }
 
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
-        self.calls.begin(nodes.len());
         self.horizon.follow(metric);
         self.call_all(At { blade, step, nodes }, metric);
     }
 
-    fn calls(&self) -> &Calls {
-        &self.calls
-    }
-
-    fn place(&self, source: u32) -> DVec2 {
-        self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
+    fn calls(&self) -> &Round {
+        &self.round
     }
 
     fn take_over(

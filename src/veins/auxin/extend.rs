@@ -1,8 +1,9 @@
 //! Where a vein grows on: children of called nodes, and veins that meet.
 
 use glam::DVec2;
+use smallvec::SmallVec;
 
-use super::callers::Callers;
+use super::calls::{Calls, Round};
 use super::nodes::{LEAST_BETWEEN_NODES, Meeting, Nodes};
 use super::web::Edge;
 use crate::growth::{GrowingBlade, Metric};
@@ -21,22 +22,38 @@ const LEAST_PULL: f64 = 1.0 - 1e-9;
 const LONGEST_JOIN: f64 = 2.0;
 
 impl Nodes {
-    /// Grows a called node towards its callers.
+    /// Grows each called node one step towards its callers.
     ///
-    /// Where they pull apart (their unit vectors sum to less than 1) the first gets a child of its
-    /// own and is left out, until the rest agree or one is left (Foster).
+    /// On one thread: to find out on all of them where there is room, before anything grows, took longer on two
+    /// threads than to find it out on one, for each wants what the other has just written.
     pub(super) fn extend(
         &mut self,
-        node: NodeId,
-        calls: &dyn Callers,
+        round: &Round,
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
     ) {
-        let mut pull = calls.calls().pull(node);
-        let mut left = calls.calls().count(node);
+        for (node, calls) in round.called() {
+            self.grow_on(node, calls, blade, step, metric);
+        }
+    }
+
+    /// Grows a called node towards its callers.
+    ///
+    /// Where they pull apart (their unit vectors sum to less than 1) the first gets a child of its
+    /// own and is left out, until the rest agree or one is left (Foster).
+    fn grow_on(
+        &mut self,
+        node: NodeId,
+        calls: &Calls,
+        blade: &GrowingBlade,
+        step: u64,
+        metric: Metric,
+    ) {
+        let mut pull = calls.pull(node);
+        let mut left = calls.count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
-            let units = calls.units(node, self, metric);
+            let units = calls.units(node, self.position(node), metric);
             let mut first = 0;
             while left > 1 && pull.length_squared() < LEAST_PULL {
                 self.sprout(node, units[first], blade, step, metric);
@@ -61,7 +78,7 @@ impl Nodes {
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
-            let towards = calls.unit_to_nearest(node, self, metric);
+            let towards = calls.unit_to_nearest(node, self.position(node), metric);
             self.sprout(node, towards, blade, step, metric);
         }
     }
@@ -73,14 +90,14 @@ impl Nodes {
         node: NodeId,
         towards: DVec2,
         left: usize,
-        calls: &dyn Callers,
+        calls: &Calls,
         metric: Metric,
     ) -> DVec2 {
         let parent = self.graph.parent(node).filter(|_| self.web.is_tip(node));
         let mut way = towards;
         if let Some(parent) = parent.filter(|_| left > 1 && self.steering.straightens()) {
             let heading = metric.between(self.position(parent), self.position(node)).normalize();
-            let units = calls.units(node, self, metric);
+            let units = calls.units(node, self.position(node), metric);
             way = self.steering.ahead(&units[units.len() - left..], heading).normalize_or(towards);
         }
         self.steering.pulled(way)
@@ -99,9 +116,8 @@ impl Nodes {
     ) -> Option<NodeId> {
         let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
         let around = metric.around(place, least);
-        let is_free = !self
-            .near
-            .any_near(place, around, |_, q| metric.distance_squared(place, q) < least * least)
+        let is_there = |_, q| metric.distance_squared(place, q) < least * least;
+        let is_free = !self.near.any_near(self.positions(), place, around, is_there)
             && blade.is_inside(place, step)
             && !blade.blocks_sight(self.position(node), place, step)
             && !self.overlaps(node, place, metric)
@@ -129,7 +145,7 @@ impl Nodes {
         let others = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
         let reach = metric.around(child, LEAST_BETWEEN_CHILDREN * length);
         let graph = &self.graph;
-        let taken = self.near.any_near(child, reach, |id, q| {
+        let taken = self.near.any_near(graph.positions(), child, reach, |id, q| {
             let d2 = metric.distance_squared(child, q);
             d2 < others || (d2 < siblings && graph.parent(id) == Some(node))
         });
@@ -196,13 +212,12 @@ impl Nodes {
             .copied()
             .find(|&node| metric.distance_squared(self.position(node), place) < least2);
         let reach = metric.around(place, LEAST_BETWEEN_NODES * length);
-        let taken =
-            || self.near.any_near(place, reach, |_, q| metric.distance_squared(place, q) < least2);
-        if there.is_none() && taken() {
+        let is_there = |_, q| metric.distance_squared(place, q) < least2;
+        if there.is_none() && self.near.any_near(self.positions(), place, reach, is_there) {
             return;
         }
         let place = there.map_or(place, |node| self.position(node));
-        let mut ends: Vec<NodeId> = there.into_iter().collect();
+        let mut ends: SmallVec<[NodeId; 6]> = there.into_iter().collect();
         for &node in arrivals.iter().filter(|&&node| Some(node) != there) {
             let from = self.position(node);
             let is_free = ends.iter().all(|&end| !self.are_close(node, end, metric))

@@ -6,16 +6,23 @@
 //! too, one by one, and took 0.14 of the 0.31 seconds in which 100 000 sources were served; here it
 //! takes about 0.03.
 
+mod acting;
 mod cells;
 mod offer;
+mod shares;
+
+use std::ops::Range;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
+pub(super) use self::acting::Acting;
 use self::cells::Cells;
+use self::shares::Shares;
 use super::NONE;
 use super::tiles::Found;
 use crate::geometry::Rect;
+use crate::parallel;
 use crate::veins::graph::NodeId;
 
 /// In place of the distance from which on a node does not matter, for a dead source.
@@ -101,15 +108,14 @@ pub(super) struct Field<S> {
     sources: Vec<Source<S>>,
     cells: Cells,
     living: usize,
-    /// Sources in reach of a node, ascending.
-    acting: Vec<u32>,
-    /// Sources that came into reach since they were last merged with those.
-    arrived: Vec<u32>,
+    /// Sources in reach of a node, by band of cells.
+    acting: Vec<Acting>,
     /// Sources that died since they were last taken.
     dead: Vec<u32>,
     news: News,
     /// What new nodes found, by thread; kept for its memory.
     finds: Vec<offer::Finds>,
+    shares: Shares,
 }
 
 impl<S: Copy + Send + Sync> Field<S> {
@@ -122,11 +128,11 @@ impl<S: Copy + Send + Sync> Field<S> {
             sources: Vec::new(),
             cells: Cells::new(bounds, f64::INFINITY),
             living: 0,
-            acting: Vec::new(),
-            arrived: Vec::new(),
+            acting: vec![Acting::default()],
             dead: Vec::new(),
             news: News::default(),
             finds: Vec::new(),
+            shares: Shares::default(),
         }
     }
 
@@ -150,9 +156,17 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.sources.push(Source { id, is_acting, state });
         self.living += 1;
         if is_acting {
-            self.arrived.push(id);
+            self.acting[self.cells.band_of(p)].arrive(id);
         }
         id
+    }
+
+    /// Makes room for so many more sources.
+    pub(super) fn expect(&mut self, more: usize) {
+        self.slots.reserve(more);
+        self.places.reserve(more);
+        self.bound2.reserve(more);
+        self.sources.reserve(more);
     }
 
     /// Adds a source that is used up already, so that those after it keep their ids.
@@ -211,22 +225,20 @@ impl<S: Copy + Send + Sync> Field<S> {
         std::mem::take(&mut self.dead)
     }
 
-    /// The ids of the sources in reach, ascending, to be given back to [`set_acting`](Self::set_acting).
-    pub(super) fn take_acting(&mut self) -> Vec<u32> {
-        self.arrived.sort_unstable();
-        let mut acting = std::mem::take(&mut self.acting);
-        merge(&mut acting, &self.arrived);
-        self.arrived.clear();
-        acting
+    /// The sources in reach by band, to be given back to [`set_acting`](Self::set_acting).
+    pub(super) fn take_acting(&mut self) -> Vec<Acting> {
+        std::mem::take(&mut self.acting)
     }
 
-    /// The same.
-    pub(super) fn acting(&self) -> &[u32] {
-        &self.acting
-    }
-
-    pub(super) fn set_acting(&mut self, acting: Vec<u32>) {
+    pub(super) fn set_acting(&mut self, acting: Vec<Acting>) {
+        let acts = |id: u32| self.slot(id).is_some_and(|slot| self.sources[slot].is_acting);
+        debug_assert!(acting.iter().flat_map(Acting::iter).all(acts), "others have been taken out");
         self.acting = acting;
+    }
+
+    /// The ids of the sources in reach, some of them dead.
+    pub(super) fn acting(&self) -> impl Iterator<Item = u32> + '_ {
+        self.acting.iter().flat_map(Acting::iter)
     }
 
     /// Puts the sources in order of place once enough were born or died since, for searches that
@@ -245,23 +257,73 @@ impl<S: Copy + Send + Sync> Field<S> {
             || alive < THINNED * sorted as f64
             || width * 2.0 < self.cells.width;
         if is_stale {
-            self.sort(width);
+            // Without a reach a node has callers everywhere: sources that call by band would call in vain.
+            let bands = if reach.is_finite() { parallel::hands() } else { 1 };
+            self.sort(width, bands);
         }
     }
 
     /// Drops the dead and puts the living in order of cell and, in a cell, of slot.
-    fn sort(&mut self, width: f64) {
+    fn sort(&mut self, width: f64, bands: usize) {
         let mut cells = Cells::new(self.bounds, width);
         let alive = |slot: &u32| self.bound2[*slot as usize] != DEAD;
         let living: Vec<u32> = (0..self.places.len() as u32).filter(alive).collect();
-        let order = cells.sort(&living, &self.places);
+        let order = cells.sort(bands, &living, &self.places);
         self.places = order.par_iter().map(|&slot| self.places[slot as usize]).collect();
         self.bound2 = order.par_iter().map(|&slot| self.bound2[slot as usize]).collect();
         self.sources = order.par_iter().map(|&slot| self.sources[slot as usize]).collect();
         for (slot, source) in self.sources.iter().enumerate() {
             self.slots[source.id as usize] = slot as u32;
         }
+        self.shares.share_out(cells.bands());
         self.cells = cells;
+        self.share_out_acting();
+    }
+
+    /// Gives the sources in reach to the bands that they are in now.
+    fn share_out_acting(&mut self) {
+        let bands = self.cells.bands();
+        if bands == 1 && self.acting.len() == 1 {
+            return;
+        }
+        let acting = std::mem::replace(&mut self.acting, vec![Acting::default(); bands]);
+        for id in acting.iter().flat_map(Acting::iter) {
+            self.arrive(id);
+        }
+    }
+
+    /// Takes note that a source has come into reach, if it is alive.
+    fn arrive(&mut self, id: u32) {
+        if let Some(slot) = self.slot(id) {
+            self.acting[self.cells.band_of(self.places[slot])].arrive(id);
+        }
+    }
+
+    /// The slots of each share of the sources, a band to each; of all in one where there is too little work
+    /// for giving each thread so much.
+    pub(super) fn shares(&self, work: usize, a_thread: usize) -> Vec<Range<usize>> {
+        let bands = self.cells.bands();
+        let shares = if work < bands * a_thread { 1 } else { bands };
+        let share = |at: usize| {
+            let slots = self.cells.slots_of(at);
+            // The newborn stand after all others.
+            slots.start..if at + 1 == shares { self.places.len() } else { slots.end }
+        };
+        (0..shares).map(share).collect()
+    }
+
+    /// Does each piece of work, one to a share: on the thread that knows the share, where there is enough.
+    pub(super) fn each_share<T: Send>(
+        &self,
+        pieces: &mut [T],
+        is_enough: bool,
+        work: impl Fn(&mut T) + Sync,
+    ) {
+        if pieces.len() > 1 && is_enough {
+            self.shares.each(pieces, work);
+        } else {
+            pieces.iter_mut().for_each(work);
+        }
     }
 
     /// Columns and rows of the cells, and their width.
@@ -319,29 +381,12 @@ impl<S: Copy + Send + Sync> Field<S> {
 
     /// Takes note of what came of telling.
     pub(super) fn settle_news(&mut self) {
-        self.arrived.append(&mut self.news.arrived);
+        let arrived = std::mem::take(&mut self.news.arrived);
+        arrived.into_iter().for_each(|id| self.arrive(id));
         for &id in &self.news.dead {
             self.slots[id as usize] = NONE;
         }
         self.living -= self.news.dead.len();
         self.dead.append(&mut self.news.dead);
-    }
-}
-
-/// Merges an ascending list into another, from the back and in place.
-fn merge(into: &mut Vec<u32>, other: &[u32]) {
-    let (mut a, mut b) = (into.len(), other.len());
-    into.resize(a + b, 0);
-    for at in (0..a + b).rev() {
-        if b == 0 {
-            break;
-        }
-        if a > 0 && into[a - 1] > other[b - 1] {
-            a -= 1;
-            into[at] = into[a];
-        } else {
-            b -= 1;
-            into[at] = other[b];
-        }
     }
 }

@@ -102,6 +102,8 @@ pub fn grow(
     let first = *blade.steps().start();
     let meeting = if is_closed { Meeting::Join } else { Meeting::Stop };
     let mut nodes = Nodes::new(spec, blade, start, blade.frame(first).metric(), meeting);
+    // Mostly a vein takes two or three steps from source to source.
+    nodes.expect(3 * supply.most());
     if nodes.graph().is_empty() {
         return Err(VeinError::setting("root", 0.0, "no root lies inside the blade"));
     }
@@ -146,6 +148,9 @@ pub fn grow(
             Some(closed) => closed,
             None => &mut open,
         };
+        if supply.is_due(step, age) || blade.deforms() || blade.is_warped() {
+            nodes.follow();
+        }
         // Seed new sources where the blade has room.
         supply.seed(step, age, metric, rng, calls, &nodes)?;
         // Let each source call the nodes it is to call.
@@ -153,9 +158,7 @@ pub fn grow(
         calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
-        for node in calls.calls().nodes() {
-            nodes.extend(node, calls, blade, step, metric);
-        }
+        nodes.extend(calls.calls(), blade, step, metric);
         let points = convergence.as_mut().filter(|points| points.is_open(made));
         let is_open = points.is_some();
         if let Some(points) = points {

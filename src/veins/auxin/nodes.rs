@@ -27,7 +27,8 @@ pub(super) struct Nodes {
     pub(super) graph: VeinGraph,
     /// Cells of about a step: what is around a child.
     pub(super) near: PointGrid,
-    /// Cells of about the spacing of sources: what is nearest to a source.
+    /// Cells of about the spacing of sources: what is nearest to a source. Where veins do not join, it knows
+    /// of new nodes only after [`follow`](Self::follow).
     far: PointGrid,
     pub(super) step_mm: f64,
     /// In the mature leaf; infinite without a limit.
@@ -80,6 +81,14 @@ impl Nodes {
         nodes
     }
 
+    /// Makes room for so many more nodes: what grows in place of this would be copied time and again.
+    pub(super) fn expect(&mut self, more: usize) {
+        self.graph.reserve(more);
+        self.near.expect(more);
+        self.far.expect(more);
+        self.web.expect(more);
+    }
+
     pub(super) fn graph(&self) -> &VeinGraph {
         &self.graph
     }
@@ -102,10 +111,26 @@ impl Nodes {
 
     /// Follows the lengths as they shrink.
     pub(super) fn refine(&mut self, metric: Metric) {
-        self.near.refine(metric.reach(metric.length(self.step_mm)).max_element());
-        self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element());
+        let positions = self.graph.positions();
         let cell = metric.reach(metric.length(self.step_mm)).max_element();
-        self.web.refine(cell, self.graph.positions());
+        self.near.refine(cell, positions);
+        self.web.refine(cell, positions);
+        self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element(), positions);
+    }
+
+    /// Lets sources ask for what is near them.
+    ///
+    /// Open venation asks for that where sources are born and where the blade deforms, and mostly neither
+    /// happens any more: a tenth of the time of growing.
+    pub(super) fn follow(&mut self) {
+        let new = &self.graph.positions()[self.far.len()..];
+        new.iter().for_each(|&p| _ = self.far.push(p));
+    }
+
+    /// The nodes by place, in cells of about the spacing of sources.
+    fn far(&self) -> &PointGrid {
+        debug_assert_eq!(self.far.len(), self.graph.len(), "those asked know all nodes");
+        &self.far
     }
 
     /// How far a vein grows in a step.
@@ -125,7 +150,7 @@ impl Nodes {
 
     /// The nodes by place, in cells of a few steps.
     pub(super) fn grid(&self) -> &PointGrid {
-        &self.far
+        self.far()
     }
 
     /// Whether a node stands between a source at `s` and the `node` at a squared distance from it.
@@ -141,7 +166,7 @@ impl Nodes {
         let distance = distance2.sqrt() * (1.0 + 1e-9);
         let (near, far) = (metric.around(s, distance), metric.around(p, distance));
         let (low, high) = ((s - near).max(p - far), (s + near).min(p + far));
-        self.far.any_near((low + high) / 2.0, (high - low) / 2.0, |id, q| {
+        self.far().any_near(self.positions(), (low + high) / 2.0, (high - low) / 2.0, |id, q| {
             let other2 = metric.distance_squared(s, q);
             (other2, id) < (distance2, node) && metric.distance_squared(p, q) < distance2
         })
@@ -150,7 +175,7 @@ impl Nodes {
     /// Whether a node is nearer to `p` than `distance`.
     pub(super) fn any_within(&self, p: DVec2, distance: f64, metric: Metric) -> bool {
         distance > 0.0
-            && self.far.any_near(p, metric.around(p, distance), |_, q| {
+            && self.far().any_near(self.positions(), p, metric.around(p, distance), |_, q| {
                 metric.distance_squared(p, q) < distance * distance
             })
     }
@@ -158,10 +183,11 @@ impl Nodes {
     /// The node nearest to `p`, within a squared distance.
     pub(super) fn nearest(&self, p: DVec2, metric: Metric, limit2: f64) -> Option<Nearest> {
         if !metric.is_warped() {
-            return self.far.nearest(p, metric.stretch, limit2);
+            return self.far().nearest(self.positions(), p, metric.stretch, limit2);
         }
         let mut best = Nearest { id: NodeId::MAX, distance2: limit2, others2: limit2 };
-        self.far.for_each_outwards(
+        self.far().for_each_outwards(
+            self.positions(),
             &mut best,
             p,
             |best, clear| metric.clearance(p, clear).powi(2) <= best.distance2,
@@ -188,7 +214,9 @@ impl Nodes {
     pub(super) fn add(&mut self, parent: NodeId, p: DVec2) -> NodeId {
         let node = self.graph.sprout(parent, p);
         self.near.push(p);
-        self.far.push(p);
+        if self.meeting == Meeting::Join {
+            self.far.push(p);
+        }
         self.web.add((parent, node), self.graph.positions());
         node
     }

@@ -11,10 +11,10 @@
 use glam::DVec2;
 
 use super::NONE;
-use super::callers::{self, Callers, Ranges, unit};
-use super::calls::Calls;
+use super::callers::{self, Callers, Ranges};
+use super::calls::{Calls, Round, unit};
 use super::claims::{Claim, Sight};
-use super::field::{DEAD, Field, Told};
+use super::field::{Acting, DEAD, Field, Told};
 use super::nodes::Nodes;
 use super::tiles::Tiles;
 use crate::growth::{GrowingBlade, Metric};
@@ -42,15 +42,26 @@ impl Views {
     }
 }
 
-/// New nodes for each thread, at least: a source only compares a distance, and its place in memory is
-/// wanted by one thread again in the next step.
-const A_THREAD: usize = 1024;
+/// New nodes, or sources that call, for each thread, at least: a source only compares a distance.
+const A_THREAD: usize = 64;
+
+/// What some sources found out. Kept for its memory.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+struct Answers {
+    /// The slots of those out of reach of all nodes.
+    retired: Vec<usize>,
+    /// By slot, what is known now of the sight of the nearest node.
+    sights: Vec<(usize, Sight)>,
+}
 
 /// The living sources and whom they call.
 pub(super) struct Sources {
     field: Field<Claim>,
     ranges: Ranges,
-    calls: Calls,
+    round: Round,
+    /// What sources that call find out, by share.
+    answers: Vec<Answers>,
     /// Sources born within the kill distance: they call once.
     doomed: Vec<u32>,
     /// Without a reach.
@@ -69,7 +80,8 @@ impl Sources {
         Self {
             field: Field::new(blade.mature().bounds()),
             ranges,
-            calls: Calls::default(),
+            round: Round::default(),
+            answers: Vec::new(),
             doomed: Vec::new(),
             tiles: ranges.are_unlimited().then(Tiles::default),
             views: Views::default(),
@@ -100,24 +112,95 @@ impl Sources {
     /// Lets every source call whom it is known to call.
     fn call_as_known(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
         let mut acting = self.field.take_acting();
-        acting.retain(|&source| {
-            let Some(slot) = self.field.slot(source) else { return false };
-            let id = source as usize;
-            let node = self.views.nodes[id];
-            if node == NONE {
-                return true;
-            }
-            if !self.convex && self.views.seen[id] != node {
-                if !self.sees(slot, blade, step, nodes) {
+        let mut round = std::mem::take(&mut self.round);
+        let shares = round.begin(nodes.len(), acting.len());
+        for (acting, calls) in acting.iter_mut().zip(shares) {
+            acting.retain(|source| {
+                let Some(slot) = self.field.slot(source) else { return false };
+                let id = source as usize;
+                let node = self.views.nodes[id];
+                if node == NONE {
                     return true;
                 }
-                self.views.seen[id] = node;
-            }
-            let unit = unit(nodes.position(node), self.views.places[id], metric);
-            self.calls.add(source, node, unit);
-            true
-        });
+                if !self.convex && self.views.seen[id] != node {
+                    if !self.sees(slot, blade, step, nodes) {
+                        return true;
+                    }
+                    self.views.seen[id] = node;
+                }
+                let place = self.views.places[id];
+                calls.add(source, place, node, unit(nodes.position(node), place, metric));
+                true
+            });
+            calls.end();
+        }
+        round.end(nodes.positions(), metric);
+        self.round = round;
         self.field.set_acting(acting);
+    }
+
+    /// Lets every source call the node it is nearest to.
+    fn call_all(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
+        let mut acting = self.field.take_acting();
+        let mut round = std::mem::take(&mut self.round);
+        let mut answers = std::mem::take(&mut self.answers);
+        answers.resize_with(acting.len(), Answers::default);
+        let count: usize = acting.iter().map(Acting::len).sum();
+        let is_enough = count >= acting.len() * A_THREAD;
+        let calls = round.begin(nodes.len(), acting.len());
+        let mut pieces: Vec<_> =
+            acting.iter_mut().zip(calls).zip(&mut answers).map(|((a, b), c)| (a, b, c)).collect();
+        self.field.each_share(&mut pieces, is_enough, |(acting, calls, answers)| {
+            acting.retain(|source| self.ask(source, (blade, step, metric, nodes), calls, answers));
+            calls.end();
+        });
+        round.end(nodes.positions(), metric);
+        for found in &mut answers {
+            for (slot, sight) in found.sights.drain(..) {
+                self.field.state_mut(slot).sight = sight;
+            }
+            for slot in found.retired.drain(..) {
+                self.field.retire(slot);
+                if self.deforms {
+                    // Measured again when a new node comes.
+                    self.store(slot, Claim::none(self.ranges.search2(metric)));
+                }
+            }
+        }
+        (self.answers, self.round) = (answers, round);
+        self.field.set_acting(acting);
+    }
+
+    /// Lets a source call, if it is alive; whether it goes on acting.
+    fn ask(
+        &self,
+        source: u32,
+        (blade, step, metric, nodes): (&GrowingBlade, u64, Metric, &Nodes),
+        calls: &mut Calls,
+        answers: &mut Answers,
+    ) -> bool {
+        let Some(slot) = self.field.slot(source) else { return false };
+        let claim = self.field.state(slot);
+        let (place, node) = (self.field.place(slot), claim.node);
+        if claim.near2 > self.ranges.search2(metric) {
+            if !self.warps {
+                answers.retired.push(slot);
+            }
+            return self.warps;
+        }
+        // One that only the kill distance reaches calls nobody, nor does one that is touched.
+        if claim.near2 > self.ranges.reach2(metric) || claim.near2 <= 0.0 {
+            return true;
+        }
+        let sight =
+            if self.convex { Sight::Clear } else { sight(claim, place, blade, step, nodes) };
+        if sight != claim.sight && !self.convex {
+            answers.sights.push((slot, sight));
+        }
+        if sight == Sight::Clear {
+            calls.add(source, place, node, unit(nodes.position(node), place, metric));
+        }
+        true
     }
 
     /// Follows the nearest node of a source while the blade deforms.
@@ -148,16 +231,19 @@ impl Sources {
     fn sees(&mut self, slot: usize, blade: &GrowingBlade, step: u64, nodes: &Nodes) -> bool {
         let p = self.field.place(slot);
         let claim = self.field.state_mut(slot);
-        if claim.sight == Sight::Unknown {
-            let q = nodes.position(claim.node);
-            if blade.blocks_sight_for_ever(p, q) {
-                claim.sight = Sight::Hidden;
-            } else if !blade.blocks_sight_yet(p, q, step) {
-                // The blade only gains tissue: what is clear stays clear.
-                claim.sight = Sight::Clear;
-            }
-        }
+        claim.sight = sight(claim, p, blade, step, nodes);
         claim.sight == Sight::Clear
+    }
+}
+
+/// Whether the source at `p` sees its nearest node.
+fn sight(claim: &Claim, p: DVec2, blade: &GrowingBlade, step: u64, nodes: &Nodes) -> Sight {
+    let q = nodes.position(claim.node);
+    match claim.sight {
+        Sight::Unknown if blade.blocks_sight_for_ever(p, q) => Sight::Hidden,
+        // The blade only gains tissue: what is clear stays clear.
+        Sight::Unknown if !blade.blocks_sight_yet(p, q, step) => Sight::Clear,
+        sight => sight,
     }
 }
 
@@ -197,46 +283,21 @@ impl Callers for Sources {
     }
 
     fn call(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
-        self.calls.begin(nodes.len());
         if self.keeps_views() {
             return self.call_as_known(blade, step, metric, nodes);
         }
-        let (reach2, search2) = (self.ranges.reach2(metric), self.ranges.search2(metric));
-        let mut acting = self.field.take_acting();
-        acting.retain(|&source| {
-            let Some(slot) = self.field.slot(source) else { return false };
-            if self.deforms {
-                self.measure_again(slot, nodes, metric, search2);
+        if self.deforms {
+            let acting: Vec<u32> = self.field.acting().collect();
+            for slot in acting.into_iter().filter_map(|id| self.field.slot(id)).collect::<Vec<_>>()
+            {
+                self.measure_again(slot, nodes, metric, self.ranges.search2(metric));
             }
-            let Claim { near2, node, .. } = *self.field.state(slot);
-            if near2 > search2 {
-                if self.warps {
-                    return true;
-                }
-                self.field.retire(slot);
-                if self.deforms {
-                    // Measured again when a new node comes.
-                    self.store(slot, Claim::none(search2));
-                }
-                return false;
-            }
-            // One that only the kill distance reaches calls nobody, nor does one that is touched.
-            let calls = near2 <= reach2 && near2 > 0.0;
-            if calls && (self.convex || self.sees(slot, blade, step, nodes)) {
-                let unit = unit(nodes.position(node), self.field.place(slot), metric);
-                self.calls.add(source, node, unit);
-            }
-            true
-        });
-        self.field.set_acting(acting);
+        }
+        self.call_all(blade, step, metric, nodes);
     }
 
-    fn calls(&self) -> &Calls {
-        &self.calls
-    }
-
-    fn place(&self, source: u32) -> DVec2 {
-        self.field.slot(source).map_or(DVec2::NAN, |slot| self.field.place(slot))
+    fn calls(&self) -> &Round {
+        &self.round
     }
 
     /// Lets the nodes from `before` on take over the sources they are nearest to, and removes every
@@ -281,7 +342,7 @@ impl Callers for Sources {
             let has_come = |id: &u32| {
                 self.field.slot(*id).is_some_and(|slot| self.field.state(slot).near2 <= kill2)
             };
-            reached.extend(self.field.acting().iter().copied().filter(has_come));
+            reached.extend(self.field.acting().filter(has_come));
         }
         for source in reached {
             if let Some(slot) = self.field.slot(source) {

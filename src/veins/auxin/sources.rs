@@ -1,6 +1,7 @@
 //! Where auxin sources come from: darts that fall where there is room, or given places.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::callers::Callers;
 use super::habit::{self, Density};
@@ -42,6 +43,8 @@ pub(super) struct Supply<'a> {
     scatter: PolygonScatter,
     /// Living sources, for their spacing; only where darts fall.
     spaced: PointGrid,
+    /// Where they are, and where those were that died.
+    places: Vec<DVec2>,
     /// Part of a dart left over from the last step.
     fraction: f64,
     /// Given places, or those of all darts where they fall before the first step, with their step of
@@ -89,6 +92,7 @@ impl<'a> Supply<'a> {
             rests: false,
             scatter: PolygonScatter::new(blade.mature().outline()),
             spaced: PointGrid::new(blade.mature().bounds(), cell),
+            places: Vec::new(),
             fraction: 0.0,
             waiting: Vec::new(),
             given,
@@ -96,25 +100,33 @@ impl<'a> Supply<'a> {
             is_sorted: false,
             outside: 0,
         };
-        for (i, place) in spec.sources_mm.iter().enumerate() {
-            let p = DVec2::from(*place);
-            if !p.is_finite() {
-                let problem = "is the index of a point that is not made of finite numbers";
-                return Err(VeinError::setting("veins.sources_mm", i as f64, problem));
-            }
-            supply.wait_for(p);
+        let is_odd = |place: &[f64; 2]| !DVec2::from(*place).is_finite();
+        if let Some(i) = spec.sources_mm.iter().position(is_odd) {
+            let problem = "is the index of a point that is not made of finite numbers";
+            return Err(VeinError::setting("veins.sources_mm", i as f64, problem));
         }
+        let waits = |place: &[f64; 2]| waiting(blade, DVec2::from(*place));
+        supply.waiting = spec.sources_mm.par_iter().filter_map(waits).collect();
+        supply.outside = spec.sources_mm.len() - supply.waiting.len();
         Ok(supply)
     }
 
-    /// Keeps a place for the step in which the margin passes it.
-    fn wait_for(&mut self, p: DVec2) {
-        if !self.blade.covers(p) {
-            self.outside += 1;
-            return;
+    /// How many sources may come, at most about.
+    pub(super) fn most(&self) -> usize {
+        if self.given {
+            return self.waiting.len();
         }
-        // A place the margin does not pass in time waits for ever.
-        self.waiting.push((self.blade.birth_step(p).unwrap_or(u64::MAX), p));
+        let darts = self.rate * self.blade.steps().count() as f64;
+        let room = self.blade.mature().area_mm2() / (self.spacing_mm * self.spacing_mm);
+        darts.min(room).min(MAX_SOURCES as f64) as usize
+    }
+
+    /// Whether sources may come in this step.
+    pub(super) fn is_due(&self, step: u64, age: f64) -> bool {
+        let throws = self.falls && !self.rests && !self.waits(age);
+        let next = self.waiting.last();
+        let is_waiting = next.is_some_and(|&(birth, _)| birth <= step || !self.is_sorted);
+        throws || self.volley > 0 || is_waiting
     }
 
     /// Adds the sources of one step to `calls`.
@@ -138,8 +150,11 @@ impl<'a> Supply<'a> {
                 left = left.saturating_sub(if pair[1].is_some() { 2 } else { 1 });
                 for p in pair.into_iter().flatten() {
                     if self.is_free(p, metric, nodes) {
-                        self.spaced.push(p);
-                        self.wait_for(p);
+                        self.place(p);
+                        match waiting(self.blade, p) {
+                            Some(place) => self.waiting.push(place),
+                            None => self.outside += 1,
+                        }
                     }
                 }
                 self.check_number()?;
@@ -151,19 +166,23 @@ impl<'a> Supply<'a> {
             // their ids find what they know together in memory: at a million, more than twice as fast.
             // Latest first, so that they can be popped.
             let bounds = self.blade.mature().bounds();
-            self.waiting.reverse();
-            let key = |&(birth, p): &(u64, DVec2)| (birth.max(step), z_order(bounds, p));
-            self.waiting.sort_by_cached_key(|place| std::cmp::Reverse(key(place)));
+            // Among equals the first comes first.
+            let key = |(i, &(birth, p)): (usize, &(u64, DVec2))| {
+                (birth.max(step), z_order(bounds, p), i as u32)
+            };
+            let mut order: Vec<_> = self.waiting.par_iter().enumerate().map(key).collect();
+            order.par_sort_unstable();
+            let place = |&(.., i): &(u64, u32, u32)| self.waiting[i as usize];
+            self.waiting = order.par_iter().rev().map(place).collect();
         }
-        while let Some(&(birth, p)) = self.waiting.last()
-            && birth <= step
-        {
-            self.waiting.pop();
-            calls.add(p, nodes, metric);
+        let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
+        let born: Vec<DVec2> = self.waiting.drain(waits..).rev().map(|(_, p)| p).collect();
+        if !born.is_empty() {
+            calls.add_all(&born, nodes, metric);
         }
         if self.falls && !self.rests && !self.waits(age) {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();
-            self.spaced.refine(cell);
+            self.spaced.refine(cell, &self.places);
             // As many as would fall on the whole leaf if all of it were as large as its largest part;
             // those that fall beside the others are lost.
             self.fraction += self.rate * self.blade.greatest_area_scale(step);
@@ -173,7 +192,7 @@ impl<'a> Supply<'a> {
                 for p in pair.into_iter().flatten() {
                     let is_there = self.blade.birth_step(p).is_some_and(|birth| birth <= step);
                     if is_there && self.is_free(p, metric, nodes) {
-                        self.spaced.push(p);
+                        self.place(p);
                         calls.add(p, nodes, metric);
                     }
                 }
@@ -182,6 +201,12 @@ impl<'a> Supply<'a> {
         }
         calls.keep_order(metric);
         Ok(())
+    }
+
+    /// Keeps others away from a source.
+    fn place(&mut self, p: DVec2) {
+        self.spaced.push(p);
+        self.places.push(p);
     }
 
     fn check_number(&self) -> Result<(), VeinError> {
@@ -238,7 +263,7 @@ impl<'a> Supply<'a> {
     fn is_free(&self, p: DVec2, metric: Metric, nodes: &Nodes) -> bool {
         let spacing = self.room(p, metric);
         let crowded = spacing > 0.0
-            && self.spaced.any_near(p, metric.around(p, spacing), |_, q| {
+            && self.spaced.any_near(&self.places, p, metric.around(p, spacing), |_, q| {
                 metric.distance_squared(p, q) < spacing * spacing
             });
         let vein_spacing = metric.length(self.vein_spacing_mm) * self.share(p);
@@ -265,7 +290,7 @@ impl<'a> Supply<'a> {
     /// Makes room where sources died.
     pub(super) fn forget(&mut self, dead: &[u32]) {
         if self.falls {
-            dead.iter().for_each(|&id| self.spaced.remove(id));
+            dead.iter().for_each(|&id| self.spaced.remove(id, self.places[id as usize]));
         }
     }
 
@@ -283,4 +308,10 @@ impl<'a> Supply<'a> {
     pub(super) fn unborn(&self) -> usize {
         self.waiting.len()
     }
+}
+
+/// A place with the step in which the margin passes it, if it lies in the blade.
+fn waiting(blade: &GrowingBlade, p: DVec2) -> Option<(u64, DVec2)> {
+    // One that the margin does not pass in time waits for ever.
+    blade.covers(p).then(|| (blade.birth_step(p).unwrap_or(u64::MAX), p))
 }

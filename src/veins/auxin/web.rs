@@ -2,6 +2,7 @@
 //! how far it is from node to node along the veins.
 
 use glam::DVec2;
+use smallvec::{SmallVec, smallvec};
 
 use super::NONE;
 use crate::geometry::Rect;
@@ -17,10 +18,10 @@ pub(super) type Edge = (NodeId, NodeId);
 #[derive(Debug)]
 pub(super) struct Web {
     grid: SegmentGrid,
-    edges: Vec<Edge>,
     /// The first link of each node.
     firsts: Vec<u32>,
-    /// Lists of the nodes beside each: a node and the next link.
+    /// Lists of the nodes beside each: a node and the next link. Two for each edge, at its first end and at
+    /// the other.
     links: Vec<(NodeId, u32)>,
 }
 
@@ -28,13 +29,19 @@ impl Web {
     /// No edges yet, in cells of about `cell`.
     pub(super) fn new(bounds: Rect, cell: f64) -> Self {
         let grid = SegmentGrid::new(bounds, cell);
-        Self { grid, edges: Vec::new(), firsts: Vec::new(), links: Vec::new() }
+        Self { grid, firsts: Vec::new(), links: Vec::new() }
+    }
+
+    /// Makes room for so many more nodes, each with an edge.
+    pub(super) fn expect(&mut self, more: usize) {
+        self.grid.expect(more);
+        self.firsts.reserve(more);
+        self.links.reserve(2 * more);
     }
 
     pub(super) fn add(&mut self, edge: Edge, positions: &[DVec2]) {
         let (a, b) = edge;
         self.grid.push(positions[a as usize], positions[b as usize]);
-        self.edges.push(edge);
         self.firsts.resize(positions.len(), NONE);
         for (here, there) in [(a, b), (b, a)] {
             self.links.push((there, self.firsts[here as usize]));
@@ -43,9 +50,9 @@ impl Web {
     }
 
     pub(super) fn refine(&mut self, cell: f64, positions: &[DVec2]) {
-        let Self { grid, edges, .. } = self;
+        let Self { grid, links, .. } = self;
         grid.refine(cell, |id| {
-            let (a, b) = edges[id as usize];
+            let (a, b) = edge(links, id);
             (positions[a as usize], positions[b as usize])
         });
     }
@@ -61,7 +68,7 @@ impl Web {
     ) -> Option<Edge> {
         let mut first = (f64::INFINITY, NONE);
         self.grid.for_each_near(p, q, |id| {
-            let (a, b) = self.edges[id as usize];
+            let (a, b) = edge(&self.links, id);
             if apart.contains(&a) || apart.contains(&b) {
                 return;
             }
@@ -73,7 +80,7 @@ impl Web {
                 }
             }
         });
-        (first.1 != NONE).then(|| self.edges[first.1 as usize])
+        (first.1 != NONE).then(|| edge(&self.links, first.1))
     }
 
     fn beside(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
@@ -120,7 +127,7 @@ impl Web {
     ) -> bool {
         // A few edges at most: a list is as good as a queue. A node is looked at again when a
         // shorter way to it turns up.
-        let mut known = vec![(a, 0.0)];
+        let mut known: SmallVec<[_; 32]> = smallvec![(a, 0.0)];
         let mut next = 0;
         while next < known.len() {
             let (node, way) = known[next];
@@ -139,6 +146,12 @@ impl Web {
         }
         false
     }
+}
+
+/// The edge of a number.
+fn edge(links: &[(NodeId, u32)], id: u32) -> Edge {
+    let at = 2 * id as usize;
+    (links[at + 1].0, links[at].0)
 }
 
 /// Which share of the way from `p` to `q` lies before the line through `a` and `b`.

@@ -183,7 +183,7 @@ impl<'a> Planter<'a> {
 
     /// The node nearest to `p`.
     pub(super) fn nearest(&self, p: DVec2) -> Option<Nearest> {
-        self.near.nearest(p, DVec2::ONE, f64::INFINITY)
+        self.near.nearest(self.graph.positions(), p, DVec2::ONE, f64::INFINITY)
     }
 
     /// Where a straight vein out of a node would meet another vein, within a distance; `None` where it
@@ -212,7 +212,7 @@ impl<'a> Planter<'a> {
         let first = a == start;
         let mut found: Option<(f64, NodeId)> = None;
         let half = DVec2::splat(self.clearance + 2.0 * self.step);
-        self.near.any_near(b, half, |id, q| {
+        self.near.any_near(positions, b, half, |id, q| {
             let d2 = b.distance_squared(q);
             let close = if leaving { 0.05 * self.step } else { self.clearance };
             let parent = self.graph.parent(id);
@@ -300,7 +300,7 @@ impl<'a> Planter<'a> {
                 }
             };
             let half = DVec2::splat(reach + 2.0 * self.step);
-            self.near.any_near(to, half, |id, _| {
+            self.near.any_near(positions, to, half, |id, _| {
                 if let Some(parent) = graph.parent(id).filter(|&parent| crosses(parent, id)) {
                     note(parent, id);
                 }

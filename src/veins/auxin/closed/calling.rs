@@ -1,11 +1,10 @@
-//! Whom the sources call in a step. Each finds out for itself and changes nothing, so that many are shared
-//! out to threads; what they found out is then noted in the order of their ids.
-
-use glam::DVec2;
-use rayon::prelude::*;
+//! Whom the sources call in a step. Each finds out for itself and changes nothing but its share's calls, so
+//! that many are shared out to threads, each to the one that tells it of new nodes; what they found out is
+//! noted after.
 
 use super::super::NONE;
-use super::super::callers::unit;
+use super::super::calls::{Calls, unit};
+use super::super::field::Acting;
 use super::super::neighbours::{Around, SECTORS};
 use super::{At, Sources, State};
 use crate::growth::Metric;
@@ -16,10 +15,8 @@ pub(super) const A_THREAD: usize = 256;
 
 /// What some sources found out. Kept for its memory.
 #[derive(Debug, Default)]
+#[repr(align(128))]
 pub(super) struct Answers {
-    calls: Vec<(u32, NodeId, DVec2)>,
-    /// Those that act no more.
-    gone: Vec<u32>,
     /// The slots of those out of reach of all nodes.
     retired: Vec<usize>,
     /// Neighbours that were looked up anew, by slot.
@@ -34,9 +31,7 @@ pub(super) struct Answers {
 
 impl Answers {
     fn clear(&mut self) {
-        let Self { calls, gone, retired, arounds, sights, veins, reached } = self;
-        calls.clear();
-        gone.clear();
+        let Self { retired, arounds, sights, veins, reached } = self;
         retired.clear();
         arounds.clear();
         sights.clear();
@@ -49,69 +44,74 @@ impl Sources {
     /// Lets the sources in reach of a node call.
     pub(super) fn call_all(&mut self, at: At<'_>, metric: Metric) {
         let mut acting = self.field.take_acting();
-        let threads = rayon::current_num_threads().min(acting.len() / A_THREAD).max(1);
+        let mut round = std::mem::take(&mut self.round);
         let mut answers = std::mem::take(&mut self.answers);
-        answers.resize_with(threads.max(answers.len()), Answers::default);
+        answers.resize_with(acting.len(), Answers::default);
         answers.iter_mut().for_each(Answers::clear);
-        if threads > 1 {
-            let chunks = acting.par_chunks(acting.len().div_ceil(threads)).zip(&mut answers);
-            chunks.for_each(|(sources, answers)| self.ask(sources, at, metric, answers));
-        } else {
-            self.ask(&acting, at, metric, &mut answers[0]);
-        }
-        for found in &answers {
-            self.note(found);
-        }
-        let mut gone = answers.iter().flat_map(|found| &found.gone).peekable();
-        acting.retain(|source| gone.next_if_eq(&source).is_none());
-        self.answers = answers;
+        let count: usize = acting.iter().map(Acting::len).sum();
+        let is_enough = count >= acting.len() * A_THREAD;
+        let calls = round.begin(at.nodes.len(), acting.len());
+        let mut pieces: Vec<_> =
+            acting.iter_mut().zip(calls).zip(&mut answers).map(|((a, b), c)| (a, b, c)).collect();
+        self.field.each_share(&mut pieces, is_enough, |(acting, calls, answers)| {
+            acting.retain(|source| self.ask(source, at, metric, calls, answers));
+            calls.end();
+        });
+        round.end(at.nodes.positions(), metric);
+        answers.iter().for_each(|found| self.note(found));
+        (self.answers, self.round) = (answers, round);
         self.field.set_acting(acting);
     }
 
-    fn ask(&self, sources: &[u32], at: At<'_>, metric: Metric, answers: &mut Answers) {
+    /// Lets a source call, if it is alive; whether it goes on acting.
+    fn ask(
+        &self,
+        source: u32,
+        at: At<'_>,
+        metric: Metric,
+        calls: &mut Calls,
+        answers: &mut Answers,
+    ) -> bool {
         let nodes = at.nodes;
         let (kill2, search2) = (self.ranges.kill2(metric), self.ranges.search2(metric));
         let reach2 = self.ranges.reach2(metric);
-        for &source in sources {
-            let Some(i) = self.field.slot(source) else {
-                answers.gone.push(source);
+        let Some(i) = self.field.slot(source) else { return false };
+        let p = self.field.place(i);
+        let State { mut around, tag } = *self.field.state(i);
+        if self.deforms {
+            around = self.look_around(p, nodes, metric);
+            answers.arounds.push((i, around));
+        }
+        if self.warps && around.least2() <= kill2 && tag == NONE {
+            answers.reached.push(source);
+        }
+        if around.least2() > search2 {
+            // Unless they shrink, too, distances only grow: those nodes will not matter again.
+            if !self.warps {
+                answers.retired.push(i);
+            }
+            return self.warps;
+        }
+        let veins = (tag != NONE).then(|| self.followed(&around, tag, nodes));
+        let news = veins.filter(|veins| *veins != self.tags[tag as usize].veins);
+        answers.veins.extend(news.map(|veins| (tag, veins)));
+        for (k, node, distance2) in around.neighbours() {
+            let is_meant = distance2 > kill2
+                && distance2 <= reach2
+                && veins.is_none_or(|veins| veins[k] == node);
+            if !is_meant {
                 continue;
-            };
-            let p = self.field.place(i);
-            let State { mut around, tag } = *self.field.state(i);
-            if self.deforms {
-                around = self.look_around(p, nodes, metric);
-                answers.arounds.push((i, around));
             }
-            if self.warps && around.least2() <= kill2 && tag == NONE {
-                answers.reached.push(source);
+            let sight = self.sight(&around, p, (k, node), at);
+            if sight.is_lasting {
+                answers.sights.push((i, k, sight.is_clear));
             }
-            if around.least2() > search2 {
-                // Unless they shrink, too, distances only grow: those nodes will not matter again.
-                if !self.warps {
-                    answers.retired.push(i);
-                    answers.gone.push(source);
-                }
-                continue;
-            }
-            let veins = (tag != NONE).then(|| self.followed(&around, tag, nodes));
-            answers.veins.extend(veins.map(|veins| (tag, veins)));
-            for (k, node, distance2) in around.neighbours() {
-                let is_meant = distance2 > kill2
-                    && distance2 <= reach2
-                    && veins.is_none_or(|veins| veins[k] == node);
-                if !is_meant {
-                    continue;
-                }
-                let sight = self.sight(&around, p, (k, node), at);
-                if sight.is_lasting {
-                    answers.sights.push((i, k, sight.is_clear));
-                }
-                if sight.is_clear {
-                    answers.calls.push((source, node, unit(nodes.position(node), p, metric)));
-                }
+            if sight.is_clear {
+                let unit = unit(nodes.position(node), p, metric);
+                calls.add(source, p, node, unit);
             }
         }
+        true
     }
 
     fn note(&mut self, found: &Answers) {
@@ -129,8 +129,5 @@ impl Sources {
             self.store(i, Around::EMPTY);
         }
         self.reached.extend(&found.reached);
-        for &(source, node, unit) in &found.calls {
-            self.calls.add(source, node, unit);
-        }
     }
 }

@@ -1,6 +1,8 @@
 //! Sources that a vein has come to: whom they still wait for, and what meets at their place.
 
-use rayon::prelude::*;
+use std::ops::Range;
+
+use smallvec::SmallVec;
 
 use super::super::NONE;
 use super::super::neighbours::{Around, SECTORS};
@@ -9,6 +11,28 @@ use super::calling::A_THREAD;
 use super::{At, PATIENCE, Sources, State, Tag};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
+
+/// Whether the source in a slot sees its neighbour in a sixth, for good.
+type News = (usize, usize, bool);
+
+/// What is found out about the sources of a share that a node has come to.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+struct Settled {
+    waiting: Vec<u32>,
+    /// By slot, tags that are new or about other nodes now.
+    tags: Vec<(usize, Tag)>,
+    sights: Vec<News>,
+    done: Vec<Done>,
+}
+
+/// A source that waits no longer, and what has come to it.
+#[derive(Debug)]
+struct Done {
+    source: u32,
+    slot: usize,
+    come: SmallVec<[NodeId; SECTORS]>,
+}
 
 impl Sources {
     /// Which of the relative neighbours of a tagged source it waits for: those it was tagged with and
@@ -25,46 +49,27 @@ impl Sources {
         veins
     }
 
-    /// Tags a source that a node has come to.
-    pub(super) fn tag(&mut self, i: usize, metric: Metric, at: At<'_>) {
+    /// The tag of a source that a node has come to.
+    fn tag(&self, i: usize, metric: Metric, at: At<'_>, sights: &mut Vec<News>) -> Tag {
         let limit2 = self.ranges.search2(metric);
         let mut veins = [NONE; SECTORS];
         let mut farthest2 = 0.0f64;
-        let around = self.field.state(i).around;
+        let around = &self.field.state(i).around;
         for (k, node, distance2) in around.neighbours() {
-            if distance2 <= limit2 && self.sees(i, k, node, at) {
+            if distance2 > limit2 {
+                continue;
+            }
+            let sight = self.sight(around, self.field.place(i), (k, node), at);
+            if sight.is_lasting {
+                sights.push((i, k, sight.is_clear));
+            }
+            if sight.is_clear {
                 veins[k] = node;
                 farthest2 = farthest2.max(distance2);
             }
         }
         let steps = PATIENCE * farthest2.sqrt() / at.nodes.stride(metric);
-        let tag = Tag { veins, last_step: at.step + steps.ceil() as u64 };
-        let place = match self.free_tags.pop() {
-            Some(place) => {
-                self.tags[place as usize] = tag;
-                place
-            }
-            None => {
-                self.tags.push(tag);
-                self.tags.len() as u32 - 1
-            }
-        };
-        self.field.state_mut(i).tag = place;
-    }
-
-    /// Removes a source; the veins that have come to it, the first that grew first.
-    pub(super) fn remove(&mut self, i: usize, kill2: f64) -> Vec<NodeId> {
-        let tag = self.tags[self.field.state(i).tag as usize];
-        let come = |&(k, node, distance2): &(usize, NodeId, f64)| {
-            tag.veins[k] == node && distance2 <= kill2
-        };
-        let mut veins: Vec<NodeId> =
-            self.field.state(i).around.neighbours().filter(come).map(|(_, node, _)| node).collect();
-        veins.sort_unstable();
-        self.free_tags.push(self.field.state(i).tag);
-        self.field.state_mut(i).tag = NONE;
-        self.field.kill(i);
-        veins
+        Tag { veins, last_step: at.step + steps.ceil() as u64 }
     }
 
     /// Removes the tagged sources whose veins have all come, or that have waited long enough.
@@ -76,50 +81,96 @@ impl Sources {
         nodes: &mut Nodes,
         patience: bool,
     ) -> Vec<u32> {
-        let kill2 = self.ranges.kill2(metric);
         let mut reached = std::mem::take(&mut self.reached);
         // Those that wait stand in order already, which this sort makes use of.
         reached.sort();
         reached.dedup();
-        // Those that have waited before are looked after all at once.
-        let after = |source: &u32| {
-            let state = self.field.state(self.field.slot(*source)?);
-            (state.tag != NONE).then(|| self.followed(&state.around, state.tag, nodes))
-        };
-        let veins: Vec<Option<[NodeId; SECTORS]>> =
-            reached.par_iter().with_min_len(A_THREAD).map(after).collect();
-        let mut veins = veins.into_iter();
-        let mut meetings = Vec::new();
-        reached.retain(|&source| {
-            let veins = veins.next().flatten();
-            let Some(i) = self.field.slot(source) else { return false };
-            let State { around, tag } = *self.field.state(i);
-            match veins {
-                Some(veins) => self.tags[tag as usize].veins = veins,
-                None if around.least2() > kill2 => return false,
-                None => self.tag(i, metric, At { blade, step, nodes }),
+        let shares = self.field.shares(reached.len(), A_THREAD);
+        let mut pieces: Vec<_> =
+            shares.into_iter().map(|share| (share, Settled::default())).collect();
+        let at = At { blade, step, nodes };
+        self.field.each_share(&mut pieces, true, |(share, settled)| {
+            self.look_after(&reached, share, at, metric, patience, settled);
+        });
+        reached.clear();
+        let mut done = Vec::new();
+        for (_, settled) in pieces {
+            reached.extend(&settled.waiting);
+            self.note_tags(&settled);
+            done.extend(settled.done);
+        }
+        self.reached = reached;
+        done.sort_unstable_by_key(|done| done.source);
+        for Done { slot, .. } in &done {
+            let tag = std::mem::replace(&mut self.field.state_mut(*slot).tag, NONE);
+            self.free_tags.extend((tag != NONE).then_some(tag));
+            self.field.kill(*slot);
+        }
+        for Done { slot, come, .. } in &done {
+            if come.len() > 1 {
+                nodes.meet(self.field.place(*slot), come, blade, step, metric);
             }
-            // Its neighbours may have been seen meanwhile, and it been tagged.
-            let State { around, tag } = *self.field.state(i);
-            let tag = self.tags[tag as usize];
+        }
+        self.field.take_dead()
+    }
+
+    /// Finds out which sources of a share still wait and which are done.
+    fn look_after(
+        &self,
+        sources: &[u32],
+        share: &Range<usize>,
+        at: At<'_>,
+        metric: Metric,
+        patience: bool,
+        settled: &mut Settled,
+    ) {
+        let kill2 = self.ranges.kill2(metric);
+        for &source in sources {
+            let Some(slot) = self.field.slot(source).filter(|slot| share.contains(slot)) else {
+                continue;
+            };
+            let State { around, tag: place } = self.field.state(slot);
+            let sights = settled.sights.len();
+            let tag = match self.tags.get(*place as usize) {
+                Some(tag) => Tag { veins: self.followed(around, *place, at.nodes), ..*tag },
+                None if around.least2() > kill2 => continue,
+                None => self.tag(slot, metric, at, &mut settled.sights),
+            };
             let is_on_its_way = |(k, node, distance2): (usize, NodeId, f64)| {
                 tag.veins[k] == node && distance2 > kill2
             };
-            let waits = patience && step < tag.last_step && around.neighbours().any(is_on_its_way);
-            if waits {
-                return true;
+            if patience && at.step < tag.last_step && around.neighbours().any(is_on_its_way) {
+                settled.waiting.push(source);
+                let is_known = self.tags.get(*place as usize).is_some_and(|known| *known == tag);
+                settled.tags.extend((!is_known).then_some((slot, tag)));
+                continue;
             }
-            let veins = self.remove(i, kill2);
-            if veins.len() > 1 {
-                meetings.push((self.field.place(i), veins));
-            }
-            false
-        });
-        self.reached = reached;
-        for (place, veins) in meetings {
-            nodes.meet(place, &veins, blade, step, metric);
+            settled.sights.truncate(sights);
+            let has_come = |&(k, node, distance2): &(usize, NodeId, f64)| {
+                tag.veins[k] == node && distance2 <= kill2
+            };
+            let come = around.neighbours().filter(has_come).map(|(_, node, _)| node);
+            let mut come: SmallVec<_> = come.collect();
+            // The first that grew first.
+            come.sort_unstable();
+            settled.done.push(Done { source, slot, come });
         }
-        self.field.take_dead()
+    }
+
+    fn note_tags(&mut self, settled: &Settled) {
+        for &(i, k, clear) in &settled.sights {
+            self.field.state_mut(i).around.set_sight(k, clear);
+        }
+        for &(i, tag) in &settled.tags {
+            let place = &mut self.field.state_mut(i).tag;
+            if *place == NONE {
+                *place = self.free_tags.pop().unwrap_or_else(|| {
+                    self.tags.push(tag);
+                    self.tags.len() as u32 - 1
+                });
+            }
+            self.tags[*place as usize] = tag;
+        }
     }
 
     /// Ends the waiting of all tagged sources; the ids of the dead.

@@ -20,6 +20,7 @@ impl Sources {
         let mut around = Around::EMPTY;
         let mut ends = None;
         nodes.grid().for_each_outwards(
+            nodes.positions(),
             &mut around,
             s,
             |around, clear| {

@@ -1,11 +1,17 @@
 //! Where in the field which sources stand.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use super::NONE;
 use crate::geometry::Rect;
 
-/// Square cells over the blade: the slots that were sorted into each, and the newborn after them.
+/// Square cells over the blade, in bands of columns and there row by row: the slots that were sorted into
+/// each, and the newborn after them.
+///
+/// One thread wants one band, because veins mostly grow across and what is beside lies together. Several
+/// want one each: what a thread has written it finds in its own cache again.
 #[derive(Debug)]
 pub(super) struct Cells {
     pub(super) min: DVec2,
@@ -13,6 +19,8 @@ pub(super) struct Cells {
     per_width: f64,
     pub(super) columns: usize,
     pub(super) rows: usize,
+    /// The first column of each band, and where the last ends.
+    bands: Vec<usize>,
     /// Where the run of each cell starts.
     starts: Vec<u32>,
     /// The last newborn of each cell.
@@ -33,6 +41,7 @@ impl Cells {
             per_width,
             columns,
             rows,
+            bands: vec![0, columns],
             starts: vec![0; columns * rows + 1],
             heads: vec![NONE; columns * rows],
             nexts: Vec::new(),
@@ -48,7 +57,52 @@ impl Cells {
     }
 
     fn home(&self, p: DVec2) -> usize {
-        self.row(p.y) * self.columns + self.column(p.x)
+        self.cell(self.row(p.y), self.column(p.x))
+    }
+
+    /// The place of a cell among all.
+    fn cell(&self, row: usize, column: usize) -> usize {
+        let columns = self.band(self.band_with(column));
+        self.rows * columns.start + row * columns.len() + column - columns.start
+    }
+
+    fn band_with(&self, column: usize) -> usize {
+        self.bands[1..].partition_point(|&end| end <= column)
+    }
+
+    /// The band that a place lies in.
+    pub(super) fn band_of(&self, p: DVec2) -> usize {
+        self.band_with(self.column(p.x))
+    }
+
+    /// The columns of a band.
+    pub(super) fn band(&self, band: usize) -> Range<usize> {
+        self.bands[band]..self.bands[band + 1]
+    }
+
+    pub(super) fn bands(&self) -> usize {
+        self.bands.len() - 1
+    }
+
+    /// Makes so many bands, or as many as there are columns, with as many of the slots in each.
+    fn cut(&mut self, bands: usize, slots: &[u32], places: &[DVec2]) {
+        let mut upto = vec![0; self.columns];
+        for &slot in slots {
+            upto[self.column(places[slot as usize].x)] += 1;
+        }
+        let mut sum = 0;
+        for count in &mut upto {
+            sum += *count;
+            *count = sum;
+        }
+        self.bands.clear();
+        self.bands.push(0);
+        for band in 1..bands {
+            let even = upto.partition_point(|&slots| slots < band * sum / bands) + 1;
+            let last = self.bands.last().copied().unwrap_or_default();
+            self.bands.extend((last < even && even < self.columns).then_some(even));
+        }
+        self.bands.push(self.columns);
     }
 
     /// Adds a newborn.
@@ -62,8 +116,11 @@ impl Cells {
         self.nexts.len()
     }
 
-    /// Sorts slots into the cells; the order in which they are to stand.
-    pub(super) fn sort(&mut self, slots: &[u32], places: &[DVec2]) -> Vec<u32> {
+    /// Sorts slots into the cells of so many bands; the order in which they are to stand.
+    pub(super) fn sort(&mut self, bands: usize, slots: &[u32], places: &[DVec2]) -> Vec<u32> {
+        if bands > 1 {
+            self.cut(bands, slots, places);
+        }
         let homes: Vec<u32> =
             slots.iter().map(|&slot| self.home(places[slot as usize]) as u32).collect();
         for &home in &homes {
@@ -84,22 +141,24 @@ impl Cells {
         order
     }
 
-    /// The first slot sorted into a row, or after the last row that of the newborn.
-    pub(super) fn first_of(&self, row: usize) -> usize {
-        self.starts[row * self.columns] as usize
+    /// The slots sorted into a band.
+    pub(super) fn slots_of(&self, band: usize) -> Range<usize> {
+        let columns = self.band(band);
+        let start = |column: usize| self.starts[self.rows * column] as usize;
+        start(columns.start)..start(columns.end)
     }
 
-    /// The slots sorted into the cells of a row, from column to column.
-    pub(super) fn run(&self, row: usize, first: usize, last: usize) -> std::ops::Range<usize> {
-        let at = row * self.columns;
-        self.starts[at + first] as usize..self.starts[at + last + 1] as usize
+    /// The slots sorted into the cells of a row, from column to column of one band.
+    pub(super) fn run(&self, row: usize, first: usize, last: usize) -> Range<usize> {
+        let first_cell = self.cell(row, first);
+        self.starts[first_cell] as usize..self.starts[first_cell + last - first + 1] as usize
     }
 
     /// The slots of the newborn in a cell.
     pub(super) fn newborn_in(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + '_ {
         let sorted = self.starts[self.columns * self.rows] as usize;
         let entry = |at: u32| (at != NONE).then_some(at);
-        let head = entry(self.heads[row * self.columns + column]);
+        let head = entry(self.heads[self.cell(row, column)]);
         std::iter::successors(head, move |&at| entry(self.nexts[at as usize]))
             .map(move |at| sorted + at as usize)
     }

@@ -1,13 +1,12 @@
 //! New nodes ask the sources around them which they matter to, and tell those.
 //!
-//! On several threads the sources of a large step are shared out by rows of cells: each thread lets the
+//! On several threads the sources of a large step are shared out by bands of cells: each thread lets the
 //! new nodes ask its own. Each source hears of the nodes in the order of their ids, so that the number
 //! of threads shows nowhere.
 
 use std::ops::Range;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::cells::Cells;
 use super::{DEAD, Field, Hit, News, Source, Told};
@@ -42,11 +41,12 @@ impl Finds {
     }
 }
 
-/// Sources in consecutive slots: those sorted into some rows of cells, or the newborn.
+/// Sources in consecutive slots: those sorted into a band of cells, or the newborn.
+#[repr(align(128))]
 struct Part<'a, S> {
     cells: &'a Cells,
     /// Empty for the newborn.
-    rows: Range<usize>,
+    columns: Range<usize>,
     first: usize,
     places: &'a [DVec2],
     bound2: &'a mut [f64],
@@ -67,9 +67,8 @@ struct Fresh<'a> {
 }
 
 impl<'a, S> Part<'a, S> {
-    /// Those up to a row, and the rest.
-    fn split(self, row: usize) -> (Self, Self) {
-        let slot = self.cells.first_of(row);
+    /// Those in the first columns, up to a slot, and the rest.
+    fn split(self, columns: Range<usize>, slot: usize) -> (Self, Self) {
         let at = slot - self.first;
         let (places, later_places) = self.places.split_at(at);
         let (bound2, later_bound2) = self.bound2.split_at_mut(at);
@@ -78,7 +77,7 @@ impl<'a, S> Part<'a, S> {
             self.far.split_at(self.far.partition_point(|&far| (far as usize) < slot));
         let after = Self {
             cells: self.cells,
-            rows: row..self.rows.end,
+            columns: 0..0,
             first: slot,
             places: later_places,
             bound2: later_bound2,
@@ -87,7 +86,7 @@ impl<'a, S> Part<'a, S> {
             finds: Finds::default(),
             news: News::default(),
         };
-        (Self { rows: self.rows.start..row, places, bound2, sources, far, ..self }, after)
+        (Self { columns, places, bound2, sources, far, ..self }, after)
     }
 
     /// Tells the sources of the new nodes that matter to them.
@@ -126,7 +125,7 @@ impl<'a, S> Part<'a, S> {
         let limit2 = search * search;
         let (left, right) = (cells.column(p.x - reach.x), cells.column(p.x + reach.x));
         let (low, high) = (cells.row(p.y - reach.y), cells.row(p.y + reach.y));
-        if self.rows.is_empty() {
+        if self.columns.is_empty() {
             for row in low..=high {
                 for column in left..=right {
                     let newborn = cells.newborn_in(row, column);
@@ -135,7 +134,11 @@ impl<'a, S> Part<'a, S> {
             }
             return;
         }
-        for row in low.max(self.rows.start)..=high.min(self.rows.end - 1) {
+        let (left, right) = (left.max(self.columns.start), right.min(self.columns.end - 1));
+        if left > right {
+            return;
+        }
+        for row in low..=high {
             let run = cells.run(row, left, right);
             if metric.is_warped() {
                 run.for_each(|slot| self.look(slot, node, p, limit2, metric));
@@ -200,14 +203,13 @@ impl<S: Copy + Send + Sync> Field<S> {
         hear: impl Fn(Hit, DVec2, &mut S) -> Told + Sync,
     ) -> Vec<u32> {
         // Without a reach what is found would fill the memory.
-        let threads = if search.is_finite() { rayon::current_num_threads() } else { 1 };
+        let bands = self.cells.bands();
+        let is_shared = search.is_finite() && fresh.len() >= bands * a_thread;
         let (search, far) = self.bounded(search, fresh.len(), metric);
-        let threads = threads.min(fresh.len() / a_thread).max(1);
-        let rows = self.shared_rows(fresh, threads);
-        let mut parts = Vec::with_capacity(threads + 1);
+        let mut parts = Vec::with_capacity(bands + 1);
         let mut rest = Part {
             cells: &self.cells,
-            rows: 0..self.cells.rows,
+            columns: 0..0,
             first: 0,
             places: &self.places,
             bound2: &mut self.bound2,
@@ -216,8 +218,8 @@ impl<S: Copy + Send + Sync> Field<S> {
             finds: Finds::default(),
             news: News::default(),
         };
-        for row in rows.into_iter().chain([self.cells.rows]) {
-            let (part, later) = rest.split(row);
+        for band in 0..bands {
+            let (part, later) = rest.split(self.cells.band(band), self.cells.slots_of(band).end);
             parts.push(part);
             rest = later;
         }
@@ -226,29 +228,25 @@ impl<S: Copy + Send + Sync> Field<S> {
             part.finds = finds;
         }
         let fresh = Fresh { first, places: fresh, search, metric };
-        if threads > 1 {
-            parts.par_iter_mut().for_each(|part| part.tell_all(fresh, &hear));
+        let (sorted, newborn) = parts.split_at_mut(bands);
+        let tell = |part: &mut Part<'_, S>| part.tell_all(fresh, &hear);
+        if bands > 1 && is_shared {
+            self.shares.each(sorted, tell);
         } else {
-            parts.iter_mut().for_each(|part| part.tell_all(fresh, &hear));
+            sorted.iter_mut().for_each(tell);
         }
-        for Part { finds, mut news, .. } in parts {
+        newborn.iter_mut().for_each(tell);
+        for (band, Part { finds, mut news, .. }) in parts.into_iter().enumerate() {
             self.finds.push(finds);
-            self.news.arrived.append(&mut news.arrived);
+            match self.acting.get_mut(band) {
+                Some(acting) => acting.append(&mut news.arrived),
+                None => self.news.arrived.append(&mut news.arrived),
+            }
             self.news.dead.append(&mut news.dead);
             self.news.marked.append(&mut news.marked);
         }
         self.settle_news();
         std::mem::take(&mut self.news.marked)
-    }
-
-    /// The rows at which to cut the cells for so many threads, so that each has as many new nodes.
-    fn shared_rows(&self, fresh: &[DVec2], threads: usize) -> Vec<usize> {
-        if threads == 1 {
-            return Vec::new();
-        }
-        let mut rows: Vec<usize> = fresh.iter().map(|p| self.cells.row(p.y)).collect();
-        let cut = |i: usize| *rows.select_nth_unstable(i * fresh.len() / threads).1;
-        (1..threads).map(cut).collect()
     }
 
     /// Without a reach: a distance within which new nodes matter to nearly all sources, and the slots of

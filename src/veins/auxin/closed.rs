@@ -20,7 +20,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::NONE;
-use super::callers::{self, Callers, Ranges};
+use super::callers::{self, A_BIRTH, Callers, Ranges};
 use super::calls::Round;
 use super::field::Field;
 use super::horizon::Horizon;
@@ -30,9 +30,6 @@ use super::open;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
-
-/// So many sources are born at once: memory.
-const A_BIRTH: usize = 1 << 14;
 
 /// A tagged source waits this many times as long as its farthest vein would need.
 const PATIENCE: f64 = 2.0;
@@ -60,6 +57,8 @@ pub(super) struct Sources {
     round: Round,
     /// What sources that call find out, by thread.
     answers: Vec<calling::Answers>,
+    /// What is found out of those that wait, by share.
+    settled: Vec<reached::Settled>,
     tags: Vec<Tag>,
     free_tags: Vec<u32>,
     /// Sources to which a node has come within the kill distance, and those that wait.
@@ -78,6 +77,7 @@ impl Sources {
             ranges: Ranges::new(spec),
             round: Round::default(),
             answers: Vec::new(),
+            settled: Vec::new(),
             tags: Vec::new(),
             free_tags: Vec::new(),
             reached: Vec::new(),

@@ -113,8 +113,8 @@ pub(super) struct Field<S> {
     /// Sources that died since they were last taken.
     dead: Vec<u32>,
     news: News,
-    /// What new nodes found, by thread; kept for its memory.
-    finds: Vec<offer::Finds>,
+    /// What new nodes found and what came of it, by band; kept for its memory.
+    finds: Vec<(offer::Finds, News)>,
     shares: Shares,
 }
 

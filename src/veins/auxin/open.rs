@@ -9,14 +9,16 @@
 //! grows past it.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::NONE;
-use super::callers::{self, Callers, Ranges};
+use super::callers::{self, A_BIRTH, Callers, Ranges};
 use super::calls::{Calls, Round, unit};
 use super::claims::{Claim, Sight};
 use super::field::{Acting, DEAD, Field, Told};
 use super::nodes::Nodes;
 use super::tiles::Tiles;
+use crate::geometry::point_grid::Nearest;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
@@ -96,6 +98,22 @@ impl Sources {
         self.field.add_spent();
         if self.keeps_views() {
             self.views.add(DVec2::NAN, NONE);
+        }
+    }
+
+    /// Adds a source with its nearest node.
+    fn bear(&mut self, p: DVec2, found: Option<Nearest>, metric: Metric) {
+        let mut claim = Claim::none(self.ranges.search2(metric));
+        if let Some(nearest) = found {
+            claim.set(nearest.distance2, nearest.id, nearest.others2);
+        }
+        if self.keeps_views() {
+            self.views.add(p, callee(claim.node, claim.near2));
+        }
+        let is_acting = found.is_some() || self.warps;
+        let id = self.field.add(p, claim.bound2(self.bounds_others()), is_acting, claim);
+        if claim.near2 <= self.ranges.kill2(metric) {
+            self.doomed.push(id);
         }
     }
 
@@ -261,21 +279,22 @@ impl Callers for Sources {
         self.field.living()
     }
 
-    fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
+    fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
         let search2 = self.ranges.search2(metric);
-        let found = nodes.nearest(p, metric, search2);
-        let mut claim = Claim::none(search2);
-        if let Some(nearest) = found {
-            claim.set(nearest.distance2, nearest.id, nearest.others2);
+        self.field.expect(places.len());
+        for places in places.chunks(A_BIRTH) {
+            let nearest = |&p: &DVec2| nodes.nearest(p, metric, search2);
+            let found: Vec<Option<Nearest>> =
+                places.par_iter().with_min_len(A_THREAD).map(nearest).collect();
+            for (&p, found) in places.iter().zip(found) {
+                self.bear(p, found, metric);
+            }
         }
-        if self.keeps_views() {
-            self.views.add(p, callee(claim.node, claim.near2));
-        }
-        let is_acting = found.is_some() || self.warps;
-        let id = self.field.add(p, claim.bound2(self.bounds_others()), is_acting, claim);
-        if claim.near2 <= self.ranges.kill2(metric) {
-            self.doomed.push(id);
-        }
+    }
+
+    fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
+        let found = nodes.nearest(p, metric, self.ranges.search2(metric));
+        self.bear(p, found, metric);
     }
 
     fn keep_order(&mut self, metric: Metric) {

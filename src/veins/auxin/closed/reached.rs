@@ -15,15 +15,25 @@ use crate::veins::graph::NodeId;
 /// Whether the source in a slot sees its neighbour in a sixth, for good.
 type News = (usize, usize, bool);
 
-/// What is found out about the sources of a share that a node has come to.
+/// What is found out about the sources of a share that a node has come to. Kept for its memory.
 #[derive(Debug, Default)]
 #[repr(align(128))]
-struct Settled {
+pub(super) struct Settled {
     waiting: Vec<u32>,
     /// By slot, tags that are new or about other nodes now.
     tags: Vec<(usize, Tag)>,
     sights: Vec<News>,
     done: Vec<Done>,
+}
+
+impl Settled {
+    fn clear(&mut self) {
+        let Self { waiting, tags, sights, done } = self;
+        waiting.clear();
+        tags.clear();
+        sights.clear();
+        done.clear();
+    }
 }
 
 /// A source that waits no longer, and what has come to it.
@@ -86,19 +96,22 @@ impl Sources {
         reached.sort();
         reached.dedup();
         let shares = self.field.shares(reached.len(), A_THREAD);
-        let mut pieces: Vec<_> =
-            shares.into_iter().map(|share| (share, Settled::default())).collect();
+        let mut settled = std::mem::take(&mut self.settled);
+        settled.resize_with(shares.len(), Settled::default);
+        settled.iter_mut().for_each(Settled::clear);
+        let mut pieces: Vec<_> = shares.into_iter().zip(&mut settled).collect();
         let at = At { blade, step, nodes };
         self.field.each_share(&mut pieces, true, |(share, settled)| {
             self.look_after(&reached, share, at, metric, patience, settled);
         });
         reached.clear();
         let mut done = Vec::new();
-        for (_, settled) in pieces {
+        for settled in &mut settled {
             reached.extend(&settled.waiting);
-            self.note_tags(&settled);
-            done.extend(settled.done);
+            self.note_tags(settled);
+            done.append(&mut settled.done);
         }
+        self.settled = settled;
         self.reached = reached;
         done.sort_unstable_by_key(|done| done.source);
         for Done { slot, .. } in &done {

@@ -224,8 +224,8 @@ impl<S: Copy + Send + Sync> Field<S> {
             rest = later;
         }
         parts.push(rest);
-        for (part, finds) in parts.iter_mut().zip(self.finds.drain(..)) {
-            part.finds = finds;
+        for (part, (finds, news)) in parts.iter_mut().zip(self.finds.drain(..)) {
+            (part.finds, part.news) = (finds, news);
         }
         let fresh = Fresh { first, places: fresh, search, metric };
         let (sorted, newborn) = parts.split_at_mut(bands);
@@ -237,13 +237,13 @@ impl<S: Copy + Send + Sync> Field<S> {
         }
         newborn.iter_mut().for_each(tell);
         for (band, Part { finds, mut news, .. }) in parts.into_iter().enumerate() {
-            self.finds.push(finds);
             match self.acting.get_mut(band) {
                 Some(acting) => acting.append(&mut news.arrived),
                 None => self.news.arrived.append(&mut news.arrived),
             }
             self.news.dead.append(&mut news.dead);
             self.news.marked.append(&mut news.marked);
+            self.finds.push((finds, news));
         }
         self.settle_news();
         std::mem::take(&mut self.news.marked)

@@ -38,6 +38,9 @@ pub(super) trait Callers {
     /// The calls of this step.
     fn calls(&self) -> &Round;
 
+    /// Where a living source is.
+    fn place(&self, source: u32) -> DVec2;
+
     /// Tells the sources of the nodes from `before` on and removes those that are done with; the ids
     /// of the dead.
     fn take_over(

@@ -20,8 +20,6 @@ struct Called {
 /// A call.
 #[derive(Debug, Clone, Copy)]
 struct Call {
-    /// Where the source is.
-    from: DVec2,
     source: u32,
     /// The next call of the same node.
     next: u32,
@@ -48,12 +46,12 @@ impl Calls {
         self.called.clear();
     }
 
-    /// Lets a source at `from` call a node, which lies in the direction −`unit`.
+    /// Lets a source call a node, which lies in the direction −`unit`.
     ///
     /// Sources call in the order of their ids: floating-point addition is not associative.
-    pub(super) fn add(&mut self, source: u32, from: DVec2, node: NodeId, unit: DVec2) {
+    pub(super) fn add(&mut self, source: u32, node: NodeId, unit: DVec2) {
         let call = self.calls.len() as u32;
-        self.calls.push(Call { from, source, next: NONE });
+        self.calls.push(Call { source, next: NONE });
         match self.called.get_mut(self.places[node as usize] as usize) {
             Some(entry) if entry.node == node => {
                 self.calls[entry.last as usize].next = call;
@@ -95,17 +93,9 @@ impl Calls {
         std::iter::successors(call(self.of(node).first), move |&&Call { next, .. }| call(next))
     }
 
-    /// The unit vectors from a called node at `p` towards its callers, by their ids.
-    pub(super) fn units(&self, node: NodeId, p: DVec2, metric: Metric) -> Vec<DVec2> {
-        self.calls(node).map(|call| unit(p, call.from, metric)).collect()
-    }
-
-    /// The unit vector from a called node at `p` towards its nearest caller, the first among equals.
-    pub(super) fn unit_to_nearest(&self, node: NodeId, p: DVec2, metric: Metric) -> DVec2 {
-        let distance2 = |source: &DVec2| metric.distance_squared(*source, p);
-        let callers = self.calls(node).map(|call| call.from);
-        let nearest = callers.min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
-        nearest.map_or(DVec2::ZERO, |source| unit(p, source, metric))
+    /// The callers of a called node, ascending.
+    pub(super) fn callers(&self, node: NodeId) -> impl Iterator<Item = u32> {
+        self.calls(node).map(|call| call.source)
     }
 }
 
@@ -128,8 +118,8 @@ impl Round {
         &mut self.shares
     }
 
-    /// Takes note that all shares have called.
-    pub(super) fn end(&mut self, positions: &[DVec2], metric: Metric) {
+    /// Takes note that all shares have called; `unit` tells the unit vector from a node towards a source.
+    pub(super) fn end(&mut self, unit: impl Fn(NodeId, u32) -> DVec2) {
         let Self { shares, shared, called } = self;
         called.clear();
         for (share, calls) in (0..).zip(&*shares) {
@@ -138,7 +128,7 @@ impl Round {
         if shares.len() < 2 {
             return;
         }
-        shared.begin(positions.len());
+        shared.begin(shares[0].places.len());
         // Few runs in order, which this sort makes use of.
         called.sort();
         let several = shares.len() as u32;
@@ -146,17 +136,11 @@ impl Round {
             let (node, is_shared) = (later.0, later.0 == earlier.0);
             if is_shared && earlier.1 != several {
                 earlier.1 = several;
-                let mut calls: Vec<&Call> = Vec::new();
-                for share in &*shares {
-                    if share.nodes.binary_search(&node).is_ok() {
-                        calls.extend(share.calls(node));
-                    }
-                }
-                calls.sort_unstable_by_key(|call| call.source);
-                for call in calls {
-                    let unit = unit(positions[node as usize], call.from, metric);
-                    shared.add(call.source, call.from, node, unit);
-                }
+                let calls = |share: &&Calls| share.nodes.binary_search(&node).is_ok();
+                let callers = shares.iter().filter(calls).flat_map(|share| share.callers(node));
+                let mut callers: Vec<u32> = callers.collect();
+                callers.sort_unstable();
+                callers.into_iter().for_each(|source| shared.add(source, node, unit(node, source)));
             }
             is_shared
         });
@@ -203,14 +187,13 @@ mod tests {
                 for (id, &from) in (0..).zip(&sources) {
                     let node = nearest(from);
                     let unit = unit(positions[node], from, metric);
-                    calls[(from.x * shares as f64) as usize].add(id, from, node as NodeId, unit);
+                    calls[(from.x * shares as f64) as usize].add(id, node as NodeId, unit);
                 }
                 calls.iter_mut().for_each(Calls::end);
-                round.end(&positions, metric);
+                round.end(|node, id| unit(positions[node as usize], sources[id as usize], metric));
             }
             let told = |(node, calls): (NodeId, &Calls)| {
-                let p = positions[node as usize];
-                (node, calls.pull(node), calls.count(node), calls.units(node, p, metric))
+                (node, calls.pull(node), calls.count(node), calls.callers(node).collect::<Vec<_>>())
             };
             round.called().map(told).collect::<Vec<_>>()
         };

@@ -190,6 +190,10 @@ impl Callers for Sources {
         &self.round
     }
 
+    fn place(&self, source: u32) -> DVec2 {
+        self.field.place_of(source)
+    }
+
     fn take_over(
         &mut self,
         before: usize,

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use super::calls::{Calls, Round};
+use super::callers::Callers;
+use super::calls::{Calls, unit};
 use super::nodes::{LEAST_BETWEEN_NODES, Meeting, Nodes};
 use super::web::Edge;
 use crate::growth::{GrowingBlade, Metric};
@@ -28,13 +29,13 @@ impl Nodes {
     /// threads than to find it out on one, for each wants what the other has just written.
     pub(super) fn extend(
         &mut self,
-        round: &Round,
+        callers: &dyn Callers,
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
     ) {
-        for (node, calls) in round.called() {
-            self.grow_on(node, calls, blade, step, metric);
+        for (node, calls) in callers.calls().called() {
+            self.grow_on(node, (calls, callers), blade, step, metric);
         }
     }
 
@@ -45,7 +46,7 @@ impl Nodes {
     fn grow_on(
         &mut self,
         node: NodeId,
-        calls: &Calls,
+        (calls, callers): (&Calls, &dyn Callers),
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
@@ -53,7 +54,7 @@ impl Nodes {
         let mut pull = calls.pull(node);
         let mut left = calls.count(node);
         if left > 1 && pull.length_squared() < LEAST_PULL {
-            let units = calls.units(node, self.position(node), metric);
+            let units = self.units(node, calls, callers, metric);
             let mut first = 0;
             while left > 1 && pull.length_squared() < LEAST_PULL {
                 self.sprout(node, units[first], blade, step, metric);
@@ -69,7 +70,7 @@ impl Nodes {
         }
         let straight = pull / length;
         if !self.steering.is_off() {
-            let towards = self.steered(node, straight, left, calls, metric);
+            let towards = self.steered(node, straight, left, (calls, callers), metric);
             if self.sprout(node, towards, blade, step, metric) != Sprout::Blocked {
                 return;
             }
@@ -78,9 +79,36 @@ impl Nodes {
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
-            let towards = calls.unit_to_nearest(node, self.position(node), metric);
+            let towards = self.unit_to_nearest(node, calls, callers, metric);
             self.sprout(node, towards, blade, step, metric);
         }
+    }
+
+    /// The unit vectors from a called node towards its callers, by their ids.
+    fn units(
+        &self,
+        node: NodeId,
+        calls: &Calls,
+        callers: &dyn Callers,
+        metric: Metric,
+    ) -> Vec<DVec2> {
+        let from = self.position(node);
+        calls.callers(node).map(|source| unit(from, callers.place(source), metric)).collect()
+    }
+
+    /// The unit vector from a called node towards its nearest caller, the first among equals.
+    fn unit_to_nearest(
+        &self,
+        node: NodeId,
+        calls: &Calls,
+        callers: &dyn Callers,
+        metric: Metric,
+    ) -> DVec2 {
+        let from = self.position(node);
+        let distance2 = |source: &DVec2| metric.distance_squared(*source, from);
+        let places = calls.callers(node).map(|source| callers.place(source));
+        let nearest = places.min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
+        nearest.map_or(DVec2::ZERO, |source| unit(from, source, metric))
     }
 
     /// Where a vein goes that the last `left` of its callers pull along a unit vector: only a tip has a
@@ -90,14 +118,14 @@ impl Nodes {
         node: NodeId,
         towards: DVec2,
         left: usize,
-        calls: &Calls,
+        (calls, callers): (&Calls, &dyn Callers),
         metric: Metric,
     ) -> DVec2 {
         let parent = self.graph.parent(node).filter(|_| self.web.is_tip(node));
         let mut way = towards;
         if let Some(parent) = parent.filter(|_| left > 1 && self.steering.straightens()) {
             let heading = metric.between(self.position(parent), self.position(node)).normalize();
-            let units = calls.units(node, self.position(node), metric);
+            let units = self.units(node, calls, callers, metric);
             way = self.steering.ahead(&units[units.len() - left..], heading).normalize_or(towards);
         }
         self.steering.pulled(way)

@@ -184,6 +184,11 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.places[slot]
     }
 
+    /// Where a living source is.
+    pub(super) fn place_of(&self, id: u32) -> DVec2 {
+        self.slot(id).map_or(DVec2::NAN, |slot| self.place(slot))
+    }
+
     pub(super) fn source(&self, slot: usize) -> &Source<S> {
         &self.sources[slot]
     }

@@ -158,7 +158,7 @@ pub fn grow(
         calls.call(blade, step, metric, &nodes);
         // Grow each called node one step towards its callers.
         let before = nodes.len();
-        nodes.extend(calls.calls(), blade, step, metric);
+        nodes.extend(calls, blade, step, metric);
         let points = convergence.as_mut().filter(|points| points.is_open(made));
         let is_open = points.is_some();
         if let Some(points) = points {

@@ -147,12 +147,12 @@ impl Sources {
                     self.views.seen[id] = node;
                 }
                 let place = self.views.places[id];
-                calls.add(source, place, node, unit(nodes.position(node), place, metric));
+                calls.add(source, node, unit(nodes.position(node), place, metric));
                 true
             });
             calls.end();
         }
-        round.end(nodes.positions(), metric);
+        round.end(|node, source| unit(nodes.position(node), self.field.place_of(source), metric));
         self.round = round;
         self.field.set_acting(acting);
     }
@@ -172,7 +172,7 @@ impl Sources {
             acting.retain(|source| self.ask(source, (blade, step, metric, nodes), calls, answers));
             calls.end();
         });
-        round.end(nodes.positions(), metric);
+        round.end(|node, source| unit(nodes.position(node), self.field.place_of(source), metric));
         for found in &mut answers {
             for (slot, sight) in found.sights.drain(..) {
                 self.field.state_mut(slot).sight = sight;
@@ -216,7 +216,7 @@ impl Sources {
             answers.sights.push((slot, sight));
         }
         if sight == Sight::Clear {
-            calls.add(source, place, node, unit(nodes.position(node), place, metric));
+            calls.add(source, node, unit(nodes.position(node), place, metric));
         }
         true
     }
@@ -317,6 +317,10 @@ impl Callers for Sources {
 
     fn calls(&self) -> &Round {
         &self.round
+    }
+
+    fn place(&self, source: u32) -> DVec2 {
+        self.field.place_of(source)
     }
 
     /// Lets the nodes from `before` on take over the sources they are nearest to, and removes every

@@ -57,7 +57,8 @@ impl Sources {
             acting.retain(|source| self.ask(source, at, metric, calls, answers));
             calls.end();
         });
-        round.end(at.nodes.positions(), metric);
+        round
+            .end(|node, source| unit(at.nodes.position(node), self.field.place_of(source), metric));
         answers.iter().for_each(|found| self.note(found));
         (self.answers, self.round) = (answers, round);
         self.field.set_acting(acting);
@@ -108,7 +109,7 @@ impl Sources {
             }
             if sight.is_clear {
                 let unit = unit(nodes.position(node), p, metric);
-                calls.add(source, p, node, unit);
+                calls.add(source, node, unit);
             }
         }
         true

@@ -241,6 +241,45 @@ fn threads_show_nowhere_in_large_steps() {
 }
 
 #[test]
+fn threads_show_nowhere_while_proportions_change() {
+    for kind in [GrowthType::Anisotropic, GrowthType::NonUniform, GrowthType::Marginal] {
+        let growth = GrowthSpec {
+            r#type: kind,
+            total_steps: 80,
+            vertical_steps: 80,
+            horizontal_steps: 60,
+            start_step: 40,
+            ..GrowthSpec::default()
+        };
+        let blade = GrowingBlade::new(lobed(), &growth).expect("a blade");
+        let mut start = veins::VeinGraph::new();
+        for i in 0..300 {
+            let root = DVec2::new(1.5 * f64::from(i % 20) - 14.0, 2.0 + 5.0 * f64::from(i / 20));
+            if blade.covers(root) {
+                start.add_root(root);
+            }
+        }
+        for algorithm in [Algorithm::AuxinOpen, Algorithm::AuxinClosed] {
+            let spec = VeinSpec {
+                algorithm,
+                spawn_rate: 300.0,
+                source_spawn_distance_mm: 0.4,
+                vein_spawn_distance_mm: 0.3,
+                kill_distance_mm: 0.25,
+                node_step_mm: 0.2,
+                attraction_distance_mm: 3.0,
+                ..VeinSpec::default()
+            };
+            let alone = grown_on(1, &spec, &blade, &start);
+            assert!(alone.sources > 3000, "{kind}: {} sources are too few", alone.sources);
+            for threads in [2, 3] {
+                assert!(grown_on(threads, &spec, &blade, &start) == alone, "{kind} {algorithm}");
+            }
+        }
+    }
+}
+
+#[test]
 fn threads_show_nowhere_in_a_blade_too_narrow_to_be_shared_out() {
     let right = [(0.75, 1.0), (0.75, 150.0), (0.75, 299.0)].map(DVec2::from);
     let left = [(-0.75, 299.0), (-0.75, 150.0), (-0.75, 1.0)].map(DVec2::from);

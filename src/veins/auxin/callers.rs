@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 
-use super::calls::Round;
-use super::field::Field;
+use super::calls::{Calls, Round, unit};
+use super::field::{Acting, Field};
 use super::nodes::Nodes;
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
@@ -59,6 +59,27 @@ pub(super) trait Callers {
 
     /// The sources that are left, and why.
     fn unreached(&self, blade: &GrowingBlade, nodes: &Nodes) -> Unreached;
+}
+
+/// Lets the sources in reach call, each share of them in the order of their ids: `ask` notes the calls of one
+/// and what it found out, and says whether it stays in reach. Each thread is given `a_thread` at least.
+pub(super) fn call_by_share<S: Copy + Send + Sync, A: Default + Send>(
+    (field, acting): (&Field<S>, &mut [Acting]),
+    (round, answers): (&mut Round, &mut Vec<A>),
+    a_thread: usize,
+    (nodes, metric): (&Nodes, Metric),
+    ask: impl Fn(u32, &mut Calls, &mut A) -> bool + Sync,
+) {
+    answers.resize_with(acting.len(), A::default);
+    let count: usize = acting.iter().map(Acting::len).sum();
+    let is_enough = count >= acting.len() * a_thread;
+    let calls = round.begin(nodes.len(), acting.len());
+    let mut pieces: Vec<_> = acting.iter_mut().zip(calls).zip(answers).collect();
+    field.each_share(&mut pieces, is_enough, |((acting, calls), answers)| {
+        acting.retain(|source| ask(source, calls, answers));
+        calls.end();
+    });
+    round.end(|node, source| unit(nodes.position(node), field.place_of(source), metric));
 }
 
 /// How far nodes matter to sources, in lengths of the blade.

@@ -87,15 +87,11 @@ impl Calls {
         self.of(node).count as usize
     }
 
-    /// The calls of a called node, by their sources.
-    fn calls(&self, node: NodeId) -> impl Iterator<Item = &Call> {
-        let call = |at: u32| (at != NONE).then(|| &self.calls[at as usize]);
-        std::iter::successors(call(self.of(node).first), move |&&Call { next, .. }| call(next))
-    }
-
     /// The callers of a called node, ascending.
     pub(super) fn callers(&self, node: NodeId) -> impl Iterator<Item = u32> {
-        self.calls(node).map(|call| call.source)
+        let call = |at: u32| (at != NONE).then(|| self.calls[at as usize]);
+        std::iter::successors(call(self.of(node).first), move |&Call { next, .. }| call(next))
+            .map(|call| call.source)
     }
 }
 

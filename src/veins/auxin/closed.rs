@@ -55,7 +55,7 @@ pub(super) struct Sources {
     horizon: Horizon,
     ranges: Ranges,
     round: Round,
-    /// What sources that call find out, by thread.
+    /// What sources that call find out, by share.
     answers: Vec<calling::Answers>,
     /// What is found out of those that wait, by share.
     settled: Vec<reached::Settled>,

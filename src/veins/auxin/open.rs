@@ -15,7 +15,7 @@ use super::NONE;
 use super::callers::{self, A_BIRTH, Callers, Ranges};
 use super::calls::{Calls, Round, unit};
 use super::claims::{Claim, Sight};
-use super::field::{Acting, DEAD, Field, Told};
+use super::field::{DEAD, Field, Told};
 use super::nodes::Nodes;
 use super::tiles::Tiles;
 use crate::geometry::point_grid::Nearest;
@@ -162,17 +162,13 @@ impl Sources {
         let mut acting = self.field.take_acting();
         let mut round = std::mem::take(&mut self.round);
         let mut answers = std::mem::take(&mut self.answers);
-        answers.resize_with(acting.len(), Answers::default);
-        let count: usize = acting.iter().map(Acting::len).sum();
-        let is_enough = count >= acting.len() * A_THREAD;
-        let calls = round.begin(nodes.len(), acting.len());
-        let mut pieces: Vec<_> =
-            acting.iter_mut().zip(calls).zip(&mut answers).map(|((a, b), c)| (a, b, c)).collect();
-        self.field.each_share(&mut pieces, is_enough, |(acting, calls, answers)| {
-            acting.retain(|source| self.ask(source, (blade, step, metric, nodes), calls, answers));
-            calls.end();
-        });
-        round.end(|node, source| unit(nodes.position(node), self.field.place_of(source), metric));
+        callers::call_by_share(
+            (&self.field, &mut acting),
+            (&mut round, &mut answers),
+            A_THREAD,
+            (nodes, metric),
+            |source, calls, answers| self.ask(source, (blade, step, metric, nodes), calls, answers),
+        );
         for found in &mut answers {
             for (slot, sight) in found.sights.drain(..) {
                 self.field.state_mut(slot).sight = sight;
@@ -306,9 +302,9 @@ impl Callers for Sources {
             return self.call_as_known(blade, step, metric, nodes);
         }
         if self.deforms {
-            let acting: Vec<u32> = self.field.acting().collect();
-            for slot in acting.into_iter().filter_map(|id| self.field.slot(id)).collect::<Vec<_>>()
-            {
+            let field = &self.field;
+            let slots: Vec<usize> = field.acting().filter_map(|id| field.slot(id)).collect();
+            for slot in slots {
                 self.measure_again(slot, nodes, metric, self.ranges.search2(metric));
             }
         }

@@ -123,10 +123,14 @@ impl<'a> Supply<'a> {
 
     /// Whether sources may come in this step.
     pub(super) fn is_due(&self, step: u64, age: f64) -> bool {
-        let throws = self.falls && !self.rests && !self.waits(age);
         let next = self.waiting.last();
         let is_waiting = next.is_some_and(|&(birth, _)| birth <= step || !self.is_sorted);
-        throws || self.volley > 0 || is_waiting
+        self.throws(age) || self.volley > 0 || is_waiting
+    }
+
+    /// Whether darts fall in a step at an age.
+    fn throws(&self, age: f64) -> bool {
+        self.falls && !self.rests && !self.waits(age)
     }
 
     /// Adds the sources of one step to `calls`.
@@ -180,7 +184,7 @@ impl<'a> Supply<'a> {
         if !born.is_empty() {
             calls.add_all(&born, nodes, metric);
         }
-        if self.falls && !self.rests && !self.waits(age) {
+        if self.throws(age) {
             let cell = metric.reach(metric.length(self.spacing_mm)).max_element();
             self.spaced.refine(cell, &self.places);
             // As many as would fall on the whole leaf if all of it were as large as its largest part;

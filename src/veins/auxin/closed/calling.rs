@@ -3,8 +3,8 @@
 //! noted after.
 
 use super::super::NONE;
+use super::super::callers;
 use super::super::calls::{Calls, unit};
-use super::super::field::Acting;
 use super::super::neighbours::{Around, SECTORS};
 use super::{At, Sources, State};
 use crate::growth::Metric;
@@ -46,19 +46,14 @@ impl Sources {
         let mut acting = self.field.take_acting();
         let mut round = std::mem::take(&mut self.round);
         let mut answers = std::mem::take(&mut self.answers);
-        answers.resize_with(acting.len(), Answers::default);
         answers.iter_mut().for_each(Answers::clear);
-        let count: usize = acting.iter().map(Acting::len).sum();
-        let is_enough = count >= acting.len() * A_THREAD;
-        let calls = round.begin(at.nodes.len(), acting.len());
-        let mut pieces: Vec<_> =
-            acting.iter_mut().zip(calls).zip(&mut answers).map(|((a, b), c)| (a, b, c)).collect();
-        self.field.each_share(&mut pieces, is_enough, |(acting, calls, answers)| {
-            acting.retain(|source| self.ask(source, at, metric, calls, answers));
-            calls.end();
-        });
-        round
-            .end(|node, source| unit(at.nodes.position(node), self.field.place_of(source), metric));
+        callers::call_by_share(
+            (&self.field, &mut acting),
+            (&mut round, &mut answers),
+            A_THREAD,
+            (at.nodes, metric),
+            |source, calls, answers| self.ask(source, at, metric, calls, answers),
+        );
         answers.iter().for_each(|found| self.note(found));
         (self.answers, self.round) = (answers, round);
         self.field.set_acting(acting);

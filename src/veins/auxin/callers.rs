@@ -10,9 +10,6 @@ use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
 
-/// So many sources are born at once: memory.
-pub(super) const A_BIRTH: usize = 1 << 14;
-
 /// The living sources and whom they call.
 pub(super) trait Callers {
     /// Sources that ever were.

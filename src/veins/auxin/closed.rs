@@ -16,13 +16,15 @@ mod calling;
 mod reached;
 mod states;
 
-use glam::DVec2;
-use rayon::prelude::*;
+use std::ops::Range;
 
+use glam::DVec2;
+
+use self::states::look_around;
 use super::NONE;
-use super::callers::{self, A_BIRTH, Callers, Ranges};
+use super::callers::{self, Callers, Ranges};
 use super::calls::Round;
-use super::field::Field;
+use super::field::{Birth, Field};
 use super::horizon::Horizon;
 use super::neighbours::{Around, SECTORS};
 use super::nodes::Nodes;
@@ -104,15 +106,13 @@ impl Sources {
         Sight { is_clear, is_lasting: is_clear }
     }
 
-    /// Adds a source with what it knows.
-    fn bear(&mut self, p: DVec2, around: Around, metric: Metric) {
-        let least2 = around.least2();
-        let state = State { around, tag: NONE };
-        let is_acting = least2.is_finite() || self.warps;
-        let id = self.field.add(p, around.most2(), is_acting, state);
-        if least2 <= self.ranges.kill2(metric) {
-            self.reached.push(id);
-        }
+    /// Takes note of what sources were born.
+    fn note_births(&mut self, born: Range<u32>, metric: Metric) {
+        let (field, kill2) = (&self.field, self.ranges.kill2(metric));
+        let has_come = |id: &u32| {
+            field.slot(*id).is_some_and(|slot| field.state(slot).around.least2() <= kill2)
+        };
+        self.reached.extend(field.acting_since(born.start).filter(has_come));
     }
 
     /// The same sources in open venation.
@@ -132,6 +132,12 @@ impl Sources {
         }
         sources
     }
+}
+
+/// What a source that knows the nodes around it knows when it is born.
+fn birth(around: Around, warps: bool) -> Birth<State> {
+    let is_acting = around.least2().is_finite() || warps;
+    Birth { bound2: around.most2(), is_acting, state: State { around, tag: NONE } }
 }
 
 /// Whether a source sees a neighbour.
@@ -160,21 +166,17 @@ impl Callers for Sources {
 
     fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
         self.horizon.follow(metric);
-        self.field.expect(places.len());
-        for places in places.chunks(A_BIRTH) {
-            let look_around = |&p: &DVec2| self.look_around(p, nodes, metric);
-            let arounds: Vec<Around> =
-                places.par_iter().with_min_len(calling::A_THREAD).map(look_around).collect();
-            for (&p, around) in places.iter().zip(arounds) {
-                self.bear(p, around, metric);
-            }
-        }
+        let Self { field, horizon, ranges, warps, .. } = self;
+        let search = ranges.search(metric);
+        let birth = |p| birth(look_around(p, nodes, metric, search, horizon), *warps);
+        let born = field.add_all(places, metric.reach(search), calling::A_THREAD, birth);
+        self.note_births(born, metric);
     }
 
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
         self.horizon.follow(metric);
-        let around = self.look_around(p, nodes, metric);
-        self.bear(p, around, metric);
+        let id = self.field.add(p, birth(self.look_around(p, nodes, metric), self.warps));
+        self.note_births(id..id + 1, metric);
     }
 
     fn keep_order(&mut self, metric: Metric) {

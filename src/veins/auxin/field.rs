@@ -7,6 +7,7 @@
 //! takes about 0.03.
 
 mod acting;
+mod births;
 mod cells;
 mod offer;
 mod shares;
@@ -14,15 +15,14 @@ mod shares;
 use std::ops::Range;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 pub(super) use self::acting::Acting;
+pub(super) use self::births::Birth;
 use self::cells::Cells;
 use self::shares::Shares;
 use super::NONE;
 use super::tiles::Found;
 use crate::geometry::Rect;
-use crate::parallel;
 use crate::veins::graph::NodeId;
 
 /// In place of the distance from which on a node does not matter, for a dead source.
@@ -146,29 +146,6 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.living
     }
 
-    /// Adds a source to which nodes from a squared distance of `bound2` on do not matter; its id.
-    pub(super) fn add(&mut self, p: DVec2, bound2: f64, is_acting: bool, state: S) -> u32 {
-        let id = self.slots.len() as u32;
-        self.slots.push(self.places.len() as u32);
-        self.cells.add(p);
-        self.places.push(p);
-        self.bound2.push(bound2);
-        self.sources.push(Source { id, is_acting, state });
-        self.living += 1;
-        if is_acting {
-            self.acting[self.cells.band_of(p)].arrive(id);
-        }
-        id
-    }
-
-    /// Makes room for so many more sources.
-    pub(super) fn expect(&mut self, more: usize) {
-        self.slots.reserve(more);
-        self.places.reserve(more);
-        self.bound2.reserve(more);
-        self.sources.reserve(more);
-    }
-
     /// Adds a source that is used up already, so that those after it keep their ids.
     pub(super) fn add_spent(&mut self) {
         self.slots.push(NONE);
@@ -241,48 +218,14 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.acting = acting;
     }
 
+    /// The ids of those in reach among the sources just born, of which `first` is the first.
+    pub(super) fn acting_since(&self, first: u32) -> impl Iterator<Item = u32> + '_ {
+        self.acting.iter().flat_map(move |acting| acting.arrived_since(first))
+    }
+
     /// The ids of the sources in reach, some of them dead.
     pub(super) fn acting(&self) -> impl Iterator<Item = u32> + '_ {
         self.acting.iter().flat_map(Acting::iter)
-    }
-
-    /// Puts the sources in order of place once enough were born or died since, for searches that
-    /// reach as far as `reach`.
-    pub(super) fn keep_order(&mut self, reach: DVec2) {
-        let size = self.bounds.size();
-        let area = size.x * size.y;
-        let count = self.living as f64;
-        let width = (reach.min_element() / 2.0)
-            .min((area * IN_A_CELL / count.max(1.0)).sqrt())
-            .max((area / (CELLS_A_SOURCE * count + 64.0)).sqrt());
-        let newborn = self.cells.newborn();
-        let sorted = self.places.len() - newborn;
-        let alive = self.living.saturating_sub(newborn) as f64;
-        let is_stale = newborn > NEWBORN.max(sorted / 2)
-            || alive < THINNED * sorted as f64
-            || width * 2.0 < self.cells.width;
-        if is_stale {
-            // Without a reach a node has callers everywhere: sources that call by band would call in vain.
-            let bands = if reach.is_finite() { parallel::hands() } else { 1 };
-            self.sort(width, bands);
-        }
-    }
-
-    /// Drops the dead and puts the living in order of cell and, in a cell, of slot.
-    fn sort(&mut self, width: f64, bands: usize) {
-        let mut cells = Cells::new(self.bounds, width);
-        let alive = |slot: &u32| self.bound2[*slot as usize] != DEAD;
-        let living: Vec<u32> = (0..self.places.len() as u32).filter(alive).collect();
-        let order = cells.sort(bands, &living, &self.places);
-        self.places = order.par_iter().map(|&slot| self.places[slot as usize]).collect();
-        self.bound2 = order.par_iter().map(|&slot| self.bound2[slot as usize]).collect();
-        self.sources = order.par_iter().map(|&slot| self.sources[slot as usize]).collect();
-        for (slot, source) in self.sources.iter().enumerate() {
-            self.slots[source.id as usize] = slot as u32;
-        }
-        self.shares.share_out(cells.bands());
-        self.cells = cells;
-        self.share_out_acting();
     }
 
     /// Gives the sources in reach to the bands that they are in now.

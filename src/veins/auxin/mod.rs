@@ -26,6 +26,7 @@ mod nodes;
 mod open;
 mod sources;
 mod tiles;
+mod views;
 mod web;
 
 use super::graph::VeinGraph;

@@ -8,41 +8,21 @@
 //! also keeps a lower bound on the distance of all others and searches again when its nearest node
 //! grows past it.
 
+use std::ops::Range;
+
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::NONE;
-use super::callers::{self, A_BIRTH, Callers, Ranges};
+use super::callers::{self, Callers, Ranges};
 use super::calls::{Calls, Round, unit};
 use super::claims::{Claim, Sight};
-use super::field::{DEAD, Field, Told};
+use super::field::{Birth, DEAD, Field, Told};
 use super::nodes::Nodes;
 use super::tiles::Tiles;
-use crate::geometry::point_grid::Nearest;
+use super::views::{Views, callee};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
-
-/// By the ids of sources, whom each calls, where that stays so until a new node comes.
-///
-/// Sources call in the order of their ids and stand in the order of their cells: from here calling is a
-/// walk, not a search for each, and what hearing of a node writes here is small enough to stay near.
-#[derive(Debug, Default)]
-struct Views {
-    places: Vec<DVec2>,
-    /// [`NONE`] when it calls nobody.
-    nodes: Vec<NodeId>,
-    /// The node that was last seen.
-    seen: Vec<NodeId>,
-}
-
-impl Views {
-    fn add(&mut self, place: DVec2, node: NodeId) {
-        self.places.push(place);
-        self.nodes.push(node);
-        self.seen.push(NONE);
-    }
-}
 
 /// New nodes, or sources that call, for each thread, at least: a source only compares a distance.
 const A_THREAD: usize = 64;
@@ -101,19 +81,17 @@ impl Sources {
         }
     }
 
-    /// Adds a source with its nearest node.
-    fn bear(&mut self, p: DVec2, found: Option<Nearest>, metric: Metric) {
-        let mut claim = Claim::none(self.ranges.search2(metric));
-        if let Some(nearest) = found {
-            claim.set(nearest.distance2, nearest.id, nearest.others2);
-        }
-        if self.keeps_views() {
-            self.views.add(p, callee(claim.node, claim.near2));
-        }
-        let is_acting = found.is_some() || self.warps;
-        let id = self.field.add(p, claim.bound2(self.bounds_others()), is_acting, claim);
-        if claim.near2 <= self.ranges.kill2(metric) {
-            self.doomed.push(id);
+    /// Takes note of what sources were born.
+    fn note_births(&mut self, born: Range<u32>, metric: Metric) {
+        let (kill2, keeps_views) = (self.ranges.kill2(metric), self.keeps_views());
+        let field = &self.field;
+        let claim = |id: u32| field.slot(id).map(|slot| (field.place(slot), field.state(slot)));
+        let has_come = |id: &u32| claim(*id).is_some_and(|(_, claim)| claim.near2 <= kill2);
+        self.doomed.extend(field.acting_since(born.start).filter(has_come));
+        if keeps_views {
+            for (place, claim) in born.filter_map(claim) {
+                self.views.add(place, callee(claim.node, claim.near2));
+            }
         }
     }
 
@@ -250,6 +228,22 @@ impl Sources {
     }
 }
 
+/// What a source at `p` knows when it is born: of nodes as far as `limit2`.
+fn birth(
+    p: DVec2,
+    nodes: &Nodes,
+    metric: Metric,
+    (limit2, bounds_others, warps): (f64, bool, bool),
+) -> Birth<Claim> {
+    let found = nodes.nearest(p, metric, limit2);
+    let mut claim = Claim::none(limit2);
+    if let Some(nearest) = found {
+        claim.set(nearest.distance2, nearest.id, nearest.others2);
+    }
+    let is_acting = found.is_some() || warps;
+    Birth { bound2: claim.bound2(bounds_others), is_acting, state: claim }
+}
+
 /// Whether the source at `p` sees its nearest node.
 fn sight(claim: &Claim, p: DVec2, blade: &GrowingBlade, step: u64, nodes: &Nodes) -> Sight {
     let q = nodes.position(claim.node);
@@ -259,11 +253,6 @@ fn sight(claim: &Claim, p: DVec2, blade: &GrowingBlade, step: u64, nodes: &Nodes
         Sight::Unknown if !blade.blocks_sight_yet(p, q, step) => Sight::Clear,
         sight => sight,
     }
-}
-
-/// Whom a source calls whose nearest node is that far away: nobody, when it is touched.
-fn callee(node: NodeId, distance2: f64) -> NodeId {
-    if distance2 > 0.0 { node } else { NONE }
 }
 
 impl Callers for Sources {
@@ -276,21 +265,16 @@ impl Callers for Sources {
     }
 
     fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
-        let search2 = self.ranges.search2(metric);
-        self.field.expect(places.len());
-        for places in places.chunks(A_BIRTH) {
-            let nearest = |&p: &DVec2| nodes.nearest(p, metric, search2);
-            let found: Vec<Option<Nearest>> =
-                places.par_iter().with_min_len(A_THREAD).map(nearest).collect();
-            for (&p, found) in places.iter().zip(found) {
-                self.bear(p, found, metric);
-            }
-        }
+        let reach = metric.reach(self.ranges.search(metric));
+        let knows = (self.ranges.search2(metric), self.bounds_others(), self.warps);
+        let born = self.field.add_all(places, reach, A_THREAD, |p| birth(p, nodes, metric, knows));
+        self.note_births(born, metric);
     }
 
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
-        let found = nodes.nearest(p, metric, self.ranges.search2(metric));
-        self.bear(p, found, metric);
+        let knows = (self.ranges.search2(metric), self.bounds_others(), self.warps);
+        let id = self.field.add(p, birth(p, nodes, metric, knows));
+        self.note_births(id..id + 1, metric);
     }
 
     fn keep_order(&mut self, metric: Metric) {

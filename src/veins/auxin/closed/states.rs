@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::super::NONE;
 use super::super::field::{Hit, Told};
+use super::super::horizon::Horizon;
 use super::super::neighbours::Around;
 use super::super::nodes::Nodes;
 use super::{Sources, State};
@@ -16,30 +17,7 @@ const A_THREAD: usize = 24;
 impl Sources {
     /// Looks the neighbours of a place up from nothing.
     pub(super) fn look_around(&self, s: DVec2, nodes: &Nodes, metric: Metric) -> Around {
-        let search = self.ranges.search(metric);
-        let mut around = Around::EMPTY;
-        let mut ends = None;
-        nodes.grid().for_each_outwards(
-            nodes.positions(),
-            &mut around,
-            s,
-            |around, clear| {
-                let clear = metric.clearance(s, clear);
-                if clear > search || around.is_settled(clear) {
-                    return false;
-                }
-                let ends = ends.get_or_insert_with(|| self.horizon.distances(s, metric));
-                around.shade(s, &self.horizon, ends, nodes, metric);
-                !around.is_settled(clear)
-            },
-            |around, node, p| {
-                let distance2 = metric.distance_squared(s, p);
-                if distance2 <= search * search {
-                    around.offer(s, node, p, distance2, nodes, metric);
-                }
-            },
-        );
-        around
+        look_around(s, nodes, metric, self.ranges.search(metric), &self.horizon)
     }
 
     pub(super) fn store(&mut self, i: usize, around: Around) {
@@ -61,4 +39,37 @@ impl Sources {
         let reached = self.field.offer(before as NodeId, fresh, search, metric, A_THREAD, hear);
         self.reached.extend(reached);
     }
+}
+
+/// Looks the neighbours of a place up from nothing, as far as `search`.
+pub(super) fn look_around(
+    s: DVec2,
+    nodes: &Nodes,
+    metric: Metric,
+    search: f64,
+    horizon: &Horizon,
+) -> Around {
+    let mut around = Around::EMPTY;
+    let mut ends = None;
+    nodes.grid().for_each_outwards(
+        nodes.positions(),
+        &mut around,
+        s,
+        |around, clear| {
+            let clear = metric.clearance(s, clear);
+            if clear > search || around.is_settled(clear) {
+                return false;
+            }
+            let ends = ends.get_or_insert_with(|| horizon.distances(s, metric));
+            around.shade(s, horizon, ends, nodes, metric);
+            !around.is_settled(clear)
+        },
+        |around, node, p| {
+            let distance2 = metric.distance_squared(s, p);
+            if distance2 <= search * search {
+                around.offer(s, node, p, distance2, nodes, metric);
+            }
+        },
+    );
+    around
 }

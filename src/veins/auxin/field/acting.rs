@@ -27,6 +27,11 @@ impl Acting {
         self.ids.iter().chain(&self.arrived).copied()
     }
 
+    /// Those that came last, all of them of this id or a later one.
+    pub(super) fn arrived_since(&self, first: u32) -> impl Iterator<Item = u32> + '_ {
+        self.arrived.iter().rev().copied().take_while(move |&id| id >= first)
+    }
+
     /// Asks each in the order of their ids whether it stays.
     pub(in super::super) fn retain(&mut self, mut stays: impl FnMut(u32) -> bool) {
         self.arrived.sort_unstable();

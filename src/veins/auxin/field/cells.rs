@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::NONE;
 use crate::geometry::Rect;
@@ -85,10 +86,10 @@ impl Cells {
     }
 
     /// Makes so many bands, or as many as there are columns, with as many of the slots in each.
-    fn cut(&mut self, bands: usize, slots: &[u32], places: &[DVec2]) {
+    fn cut(&mut self, bands: usize, slots: &[u32], place: impl Fn(u32) -> DVec2) {
         let mut upto = vec![0; self.columns];
         for &slot in slots {
-            upto[self.column(places[slot as usize].x)] += 1;
+            upto[self.column(place(slot).x)] += 1;
         }
         let mut sum = 0;
         for count in &mut upto {
@@ -117,12 +118,16 @@ impl Cells {
     }
 
     /// Sorts slots into the cells of so many bands; the order in which they are to stand.
-    pub(super) fn sort(&mut self, bands: usize, slots: &[u32], places: &[DVec2]) -> Vec<u32> {
+    pub(super) fn sort(
+        &mut self,
+        bands: usize,
+        slots: &[u32],
+        place: impl Fn(u32) -> DVec2 + Sync,
+    ) -> Vec<u32> {
         if bands > 1 {
-            self.cut(bands, slots, places);
+            self.cut(bands, slots, &place);
         }
-        let homes: Vec<u32> =
-            slots.iter().map(|&slot| self.home(places[slot as usize]) as u32).collect();
+        let homes: Vec<u32> = slots.par_iter().map(|&slot| self.home(place(slot)) as u32).collect();
         for &home in &homes {
             self.starts[home as usize] += 1;
         }

@@ -136,3 +136,60 @@ impl<S: Copy + Send + Sync> Field<S> {
         arrived.into_iter().for_each(|id| self.arrive(id));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::geometry::Rect;
+    use crate::seed::{Seed, Stage};
+
+    fn assert_same(a: &Field<f64>, b: &Field<f64>) {
+        let known = |field: &Field<f64>| -> Vec<(u32, f64)> {
+            field.sources.iter().map(|source| (source.id, source.state)).collect()
+        };
+        let acting = |field: &Field<f64>| -> BTreeSet<u32> { field.acting().collect() };
+        assert_eq!(a.places, b.places);
+        assert_eq!(a.bound2, b.bound2);
+        assert_eq!(known(a), known(b));
+        assert_eq!(acting(a), acting(b));
+    }
+
+    #[test]
+    fn many_at_once_stand_as_if_born_one_by_one() {
+        let mut rng = Seed(3).stream(Stage::Tissue);
+        let reach = DVec2::splat(0.1);
+        let bounds = Rect { min: DVec2::ZERO, max: DVec2::ONE };
+        let bear = |p: DVec2| Birth { bound2: p.x + 1.0, is_acting: p.x < 0.3, state: p.x - p.y };
+        for threads in [1, 3] {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let mut fields = [Field::new(bounds), Field::new(bounds)];
+            for wave in [70, 3, 900, 500] {
+                let born: Vec<DVec2> =
+                    (0..wave).map(|_| DVec2::new(rng.unit(), rng.unit())).collect();
+                let [at_once, one_by_one] = &mut fields;
+                let ids = pool.install(|| {
+                    let ids = at_once.add_all(&born, reach, 16, bear);
+                    born.iter().for_each(|&p| _ = one_by_one.add(p, bear(p)));
+                    at_once.keep_order(reach);
+                    one_by_one.keep_order(reach);
+                    ids
+                });
+                assert_eq!(ids.len(), wave);
+                let mut since: Vec<u32> = at_once.acting_since(ids.start).collect();
+                since.sort_unstable();
+                let in_reach = |&id: &u32| born[(id - ids.start) as usize].x < 0.3;
+                assert_eq!(since, ids.clone().filter(in_reach).collect::<Vec<_>>());
+                assert_same(at_once, one_by_one);
+                for field in [at_once, one_by_one] {
+                    for id in (0..field.len() as u32).step_by(3) {
+                        let slot = field.slot(id);
+                        slot.into_iter().for_each(|slot| field.kill(slot));
+                    }
+                }
+            }
+        }
+    }
+}

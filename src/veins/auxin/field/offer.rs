@@ -3,6 +3,10 @@
 //! On several threads the sources of a large step are shared out by bands of cells: each thread lets the
 //! new nodes ask its own. Each source hears of the nodes in the order of their ids, so that the number
 //! of threads shows nowhere.
+//!
+//! To tell sources while the nodes of the step are still being laid gained nothing on two threads: the one that
+//! lays must then be given fewer sources, which call on it alone, too, and whatever one thread tells and
+//! another lets call travels between their caches.
 
 use std::ops::Range;
 

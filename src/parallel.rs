@@ -1,8 +1,9 @@
-//! Threads that stay awake for work handed out in small pieces.
+//! Threads that stay awake for work handed out in small pieces, and memory that all of them ask for.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::Yield;
+use rayon::prelude::*;
 
 /// More threads find nothing to do in one leaf.
 const MOST: usize = 4;
@@ -11,6 +12,32 @@ const MOST: usize = 4;
 #[must_use]
 pub fn hands() -> usize {
     rayon::current_num_threads().min(MOST)
+}
+
+/// Fewer elements are written sooner than handed out.
+const WORTH_SHARING: usize = 1 << 16;
+
+/// So many elements, all of them `value`.
+///
+/// The system hands out memory page by page where it is first written to, which takes longer than the
+/// writing: of much memory every thread asks for a part.
+#[must_use]
+pub fn filled<T: Copy + Send + Sync>(len: usize, value: T) -> Vec<T> {
+    if len < WORTH_SHARING || hands() == 1 {
+        return vec![value; len];
+    }
+    rayon::iter::repeat_n(value, len).collect()
+}
+
+/// Makes room in a list for `more` elements. On several threads half of it is asked for here and now, as
+/// [`filled`] does it, and not by the one thread that fills the list later; `value` stands for any.
+pub fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T) {
+    list.reserve(more);
+    if more >= WORTH_SHARING && hands() > 1 {
+        let len = list.len();
+        list.par_extend(rayon::iter::repeat_n(value, more / 2));
+        list.truncate(len);
+    }
 }
 
 /// Runs `work` while the other threads of the current rayon pool look for pieces of it without falling
@@ -59,6 +86,18 @@ mod tests {
             assert_eq!(sum(n), (n, n + 1));
         }
         assert_eq!(awake(|| 7), 7);
+    }
+
+    #[test]
+    fn room_is_made_behind_what_is_there() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("a pool");
+        for len in [10, WORTH_SHARING + 1] {
+            let mut list = pool.install(|| filled(len, 7_u8));
+            assert_eq!(list, vec![7; len]);
+            pool.install(|| make_room(&mut list, 2 * WORTH_SHARING, 0));
+            assert_eq!(list, vec![7; len]);
+            assert!(list.capacity() >= len + 2 * WORTH_SHARING);
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 use super::paving::Paving;
 use super::{DVec2, Rect};
+use crate::parallel;
 
 /// End of a list.
 const NONE: u32 = u32::MAX;
@@ -43,7 +44,7 @@ impl PointGrid {
     }
 
     fn over(paving: Paving) -> Self {
-        Self { paving, heads: vec![NONE; paving.len()], nexts: Vec::new(), removed: 0 }
+        Self { paving, heads: parallel::filled(paving.len(), NONE), nexts: Vec::new(), removed: 0 }
     }
 
     /// Number of points ever added.
@@ -60,7 +61,7 @@ impl PointGrid {
 
     /// Makes room for so many more points.
     pub fn expect(&mut self, more: usize) {
-        self.nexts.reserve(more);
+        parallel::make_room(&mut self.nexts, more, NONE);
     }
 
     /// Adds a point.

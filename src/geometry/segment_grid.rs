@@ -6,6 +6,7 @@
 
 use super::paving::Paving;
 use super::{DVec2, Rect};
+use crate::parallel;
 
 /// End of a list.
 const NONE: u32 = u32::MAX;
@@ -29,12 +30,12 @@ impl SegmentGrid {
     }
 
     fn over(paving: Paving) -> Self {
-        Self { paving, heads: vec![NONE; paving.len()], entries: Vec::new(), len: 0 }
+        Self { paving, heads: parallel::filled(paving.len(), NONE), entries: Vec::new(), len: 0 }
     }
 
     /// Makes room for so many more segments, about as long as a cell.
     pub fn expect(&mut self, more: usize) {
-        self.entries.reserve(2 * more);
+        parallel::make_room(&mut self.entries, 2 * more, (NONE, NONE));
     }
 
     /// Adds the segment a–b.

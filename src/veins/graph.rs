@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 
+use crate::parallel;
 use crate::parameter::words;
 
 /// A node, by its place in the graph. Parents come before children.
@@ -67,8 +68,8 @@ impl VeinGraph {
 
     /// Makes room for so many more nodes.
     pub fn reserve(&mut self, more: usize) {
-        self.positions.reserve(more);
-        self.parents.reserve(more);
+        parallel::make_room(&mut self.positions, more, DVec2::ZERO);
+        parallel::make_room(&mut self.parents, more, 0);
     }
 
     /// Adds a root at the petiole.

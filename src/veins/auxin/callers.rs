@@ -70,9 +70,10 @@ pub(super) fn call_by_share<S: Copy + Send + Sync, A: Default + Send>(
     answers.resize_with(acting.len(), A::default);
     let count: usize = acting.iter().map(Acting::len).sum();
     let is_enough = count >= acting.len() * a_thread;
-    let calls = round.begin(nodes.len(), acting.len());
+    let calls = round.shares(acting.len());
     let mut pieces: Vec<_> = acting.iter_mut().zip(calls).zip(answers).collect();
     field.each_share(&mut pieces, is_enough, |((acting, calls), answers)| {
+        calls.begin(nodes.len());
         acting.retain(|source| ask(source, calls, answers));
         calls.end();
     });

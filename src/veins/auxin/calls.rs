@@ -10,11 +10,11 @@ use crate::veins::graph::NodeId;
 #[derive(Debug, Clone, Copy)]
 struct Called {
     node: NodeId,
+    count: u32,
     /// The sum of the unit vectors towards the callers.
     pull: DVec2,
     first: u32,
     last: u32,
-    count: u32,
 }
 
 /// A call.
@@ -34,13 +34,13 @@ pub(super) struct Calls {
     places: Vec<u32>,
     called: Vec<Called>,
     calls: Vec<Call>,
-    /// The called nodes, ascending.
-    nodes: Vec<NodeId>,
+    /// The called nodes, ascending, each with its place in `called`.
+    order: Vec<(NodeId, u32)>,
 }
 
 impl Calls {
     /// Begins a step with that many nodes.
-    fn begin(&mut self, nodes: usize) {
+    pub(super) fn begin(&mut self, nodes: usize) {
         self.places.resize(nodes, 0);
         self.calls.clear();
         self.called.clear();
@@ -61,36 +61,27 @@ impl Calls {
             }
             _ => {
                 self.places[node as usize] = self.called.len() as u32;
-                self.called.push(Called { node, pull: unit, first: call, last: call, count: 1 });
+                self.called.push(Called { node, count: 1, pull: unit, first: call, last: call });
             }
         }
     }
 
     /// Takes note that all have called.
     pub(super) fn end(&mut self) {
-        self.nodes.clear();
-        self.nodes.extend(self.called.iter().map(|called| called.node));
-        self.nodes.sort_unstable();
+        self.order.clear();
+        self.order.extend(self.called.iter().map(|called| called.node).zip(0..));
+        self.order.sort_unstable();
     }
 
-    fn of(&self, node: NodeId) -> &Called {
-        &self.called[self.places[node as usize] as usize]
+    /// The called nodes, ascending.
+    fn ascending(&self) -> impl Iterator<Item = &Called> {
+        self.order.iter().map(|&(_, at)| &self.called[at as usize])
     }
 
-    /// The sum of the unit vectors towards the callers of a called node.
-    pub(super) fn pull(&self, node: NodeId) -> DVec2 {
-        self.of(node).pull
-    }
-
-    /// How many call a called node.
-    pub(super) fn count(&self, node: NodeId) -> usize {
-        self.of(node).count as usize
-    }
-
-    /// The callers of a called node, ascending.
-    pub(super) fn callers(&self, node: NodeId) -> impl Iterator<Item = u32> {
+    /// Who calls a node, ascending.
+    fn callers(&self, called: &Called) -> impl Iterator<Item = u32> {
         let call = |at: u32| (at != NONE).then(|| self.calls[at as usize]);
-        std::iter::successors(call(self.of(node).first), move |&Call { next, .. }| call(next))
+        std::iter::successors(call(called.first), move |&Call { next, .. }| call(next))
             .map(|call| call.source)
     }
 }
@@ -101,51 +92,95 @@ pub(super) struct Round {
     shares: Vec<Calls>,
     /// The calls of nodes that sources of several shares call.
     shared: Calls,
-    /// The called nodes, ascending, each with the number of the share that calls it; after the last the
-    /// number of those that are shared.
-    called: Vec<(NodeId, u32)>,
+    /// The called nodes of all shares, one share after the other, and then those that are shared: who grows
+    /// them finds them in a row, and not in what other threads have just written.
+    called: Vec<Called>,
+    /// Where those of each share end.
+    ends: Vec<usize>,
+    /// The called nodes, ascending, each with its place in `called`.
+    order: Vec<(NodeId, u32)>,
 }
 
 impl Round {
-    /// Begins a step with that many nodes; where the sources of each share note their calls.
-    pub(super) fn begin(&mut self, nodes: usize, shares: usize) -> &mut [Calls] {
+    /// Where the sources of each share are to note their calls.
+    pub(super) fn shares(&mut self, shares: usize) -> &mut [Calls] {
         self.shares.resize_with(shares, Calls::default);
-        self.shares.iter_mut().for_each(|calls| calls.begin(nodes));
         &mut self.shares
     }
 
     /// Takes note that all shares have called; `unit` tells the unit vector from a node towards a source.
     pub(super) fn end(&mut self, unit: impl Fn(NodeId, u32) -> DVec2) {
-        let Self { shares, shared, called } = self;
+        let Self { shares, shared, called, ends, order } = self;
         called.clear();
-        for (share, calls) in (0..).zip(&*shares) {
-            called.extend(calls.nodes.iter().map(|&node| (node, share)));
+        ends.clear();
+        for calls in &*shares {
+            called.extend(calls.ascending());
+            ends.push(called.len());
         }
+        order.clear();
+        order.extend(called.iter().map(|called| called.node).zip(0..));
         if shares.len() < 2 {
             return;
         }
         shared.begin(shares[0].places.len());
         // Few runs in order, which this sort makes use of.
-        called.sort();
-        let several = shares.len() as u32;
-        called.dedup_by(|later, earlier| {
+        order.sort();
+        let alone = called.len();
+        order.dedup_by(|later, earlier| {
             let (node, is_shared) = (later.0, later.0 == earlier.0);
-            if is_shared && earlier.1 != several {
-                earlier.1 = several;
-                let calls = |share: &&Calls| share.nodes.binary_search(&node).is_ok();
-                let callers = shares.iter().filter(calls).flat_map(|share| share.callers(node));
-                let mut callers: Vec<u32> = callers.collect();
+            if is_shared && (earlier.1 as usize) < alone {
+                earlier.1 = (alone + shared.called.len()) as u32;
+                let mut callers = Vec::new();
+                for calls in &*shares {
+                    if let Ok(at) = calls.order.binary_search_by_key(&node, |&(node, _)| node) {
+                        callers.extend(calls.callers(&calls.called[calls.order[at].1 as usize]));
+                    }
+                }
                 callers.sort_unstable();
                 callers.into_iter().for_each(|source| shared.add(source, node, unit(node, source)));
             }
             is_shared
         });
+        called.extend_from_slice(&shared.called);
     }
 
-    /// The called nodes, ascending, each with the calls that hold its own.
-    pub(super) fn called(&self) -> impl Iterator<Item = (NodeId, &Calls)> {
-        let calls = |share: u32| self.shares.get(share as usize).unwrap_or(&self.shared);
-        self.called.iter().map(move |&(node, share)| (node, calls(share)))
+    /// The called nodes, ascending.
+    pub(super) fn called(&self) -> impl Iterator<Item = CallsOf<'_>> {
+        self.order.iter().map(|&(_, at)| CallsOf { round: self, at: at as usize })
+    }
+}
+
+/// The calls of one node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CallsOf<'a> {
+    round: &'a Round,
+    at: usize,
+}
+
+impl<'a> CallsOf<'a> {
+    fn called(self) -> &'a Called {
+        &self.round.called[self.at]
+    }
+
+    /// Whom they call.
+    pub(super) fn node(self) -> NodeId {
+        self.called().node
+    }
+
+    /// The sum of the unit vectors towards the callers.
+    pub(super) fn pull(self) -> DVec2 {
+        self.called().pull
+    }
+
+    /// How many call.
+    pub(super) fn count(self) -> usize {
+        self.called().count as usize
+    }
+
+    /// Who calls, ascending.
+    pub(super) fn callers(self) -> impl Iterator<Item = u32> {
+        let share = self.round.ends.partition_point(|&end| end <= self.at);
+        self.round.shares.get(share).unwrap_or(&self.round.shared).callers(self.called())
     }
 }
 
@@ -179,7 +214,8 @@ mod tests {
         let round = |shares: usize| {
             let mut round = Round::default();
             for _ in 0..2 {
-                let calls = round.begin(positions.len(), shares);
+                let calls = round.shares(shares);
+                calls.iter_mut().for_each(|calls| calls.begin(positions.len()));
                 for (id, &from) in (0..).zip(&sources) {
                     let node = nearest(from);
                     let unit = unit(positions[node], from, metric);
@@ -188,8 +224,8 @@ mod tests {
                 calls.iter_mut().for_each(Calls::end);
                 round.end(|node, id| unit(positions[node as usize], sources[id as usize], metric));
             }
-            let told = |(node, calls): (NodeId, &Calls)| {
-                (node, calls.pull(node), calls.count(node), calls.callers(node).collect::<Vec<_>>())
+            let told = |calls: CallsOf<'_>| {
+                (calls.node(), calls.pull(), calls.count(), calls.callers().collect::<Vec<_>>())
             };
             round.called().map(told).collect::<Vec<_>>()
         };

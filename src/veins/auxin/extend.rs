@@ -4,7 +4,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::callers::Callers;
-use super::calls::{Calls, unit};
+use super::calls::{CallsOf, unit};
 use super::nodes::{LEAST_BETWEEN_NODES, Meeting, Nodes};
 use super::web::Edge;
 use crate::growth::{GrowingBlade, Metric};
@@ -34,8 +34,8 @@ impl Nodes {
         step: u64,
         metric: Metric,
     ) {
-        for (node, calls) in callers.calls().called() {
-            self.grow_on(node, (calls, callers), blade, step, metric);
+        for calls in callers.calls().called() {
+            self.grow_on(calls, callers, blade, step, metric);
         }
     }
 
@@ -45,16 +45,17 @@ impl Nodes {
     /// own and is left out, until the rest agree or one is left (Foster).
     fn grow_on(
         &mut self,
-        node: NodeId,
-        (calls, callers): (&Calls, &dyn Callers),
+        calls: CallsOf<'_>,
+        callers: &dyn Callers,
         blade: &GrowingBlade,
         step: u64,
         metric: Metric,
     ) {
-        let mut pull = calls.pull(node);
-        let mut left = calls.count(node);
+        let node = calls.node();
+        let mut pull = calls.pull();
+        let mut left = calls.count();
         if left > 1 && pull.length_squared() < LEAST_PULL {
-            let units = self.units(node, calls, callers, metric);
+            let units = self.units(calls, callers, metric);
             let mut first = 0;
             while left > 1 && pull.length_squared() < LEAST_PULL {
                 self.sprout(node, units[first], blade, step, metric);
@@ -70,7 +71,7 @@ impl Nodes {
         }
         let straight = pull / length;
         if !self.steering.is_off() {
-            let towards = self.steered(node, straight, left, (calls, callers), metric);
+            let towards = self.steered(straight, left, (calls, callers), metric);
             if self.sprout(node, towards, blade, step, metric) != Sprout::Blocked {
                 return;
             }
@@ -79,34 +80,22 @@ impl Nodes {
         if made == Sprout::Blocked && left > 1 {
             // The mean of the callers lies beyond the margin (a sinus between two lobes), though each
             // of them can be seen. Follow the nearest; the others call again from where that leads.
-            let towards = self.unit_to_nearest(node, calls, callers, metric);
+            let towards = self.unit_to_nearest(calls, callers, metric);
             self.sprout(node, towards, blade, step, metric);
         }
     }
 
     /// The unit vectors from a called node towards its callers, by their ids.
-    fn units(
-        &self,
-        node: NodeId,
-        calls: &Calls,
-        callers: &dyn Callers,
-        metric: Metric,
-    ) -> Vec<DVec2> {
-        let from = self.position(node);
-        calls.callers(node).map(|source| unit(from, callers.place(source), metric)).collect()
+    fn units(&self, calls: CallsOf<'_>, callers: &dyn Callers, metric: Metric) -> Vec<DVec2> {
+        let from = self.position(calls.node());
+        calls.callers().map(|source| unit(from, callers.place(source), metric)).collect()
     }
 
     /// The unit vector from a called node towards its nearest caller, the first among equals.
-    fn unit_to_nearest(
-        &self,
-        node: NodeId,
-        calls: &Calls,
-        callers: &dyn Callers,
-        metric: Metric,
-    ) -> DVec2 {
-        let from = self.position(node);
+    fn unit_to_nearest(&self, calls: CallsOf<'_>, callers: &dyn Callers, metric: Metric) -> DVec2 {
+        let from = self.position(calls.node());
         let distance2 = |source: &DVec2| metric.distance_squared(*source, from);
-        let places = calls.callers(node).map(|source| callers.place(source));
+        let places = calls.callers().map(|source| callers.place(source));
         let nearest = places.min_by(|a, b| distance2(a).total_cmp(&distance2(b)));
         nearest.map_or(DVec2::ZERO, |source| unit(from, source, metric))
     }
@@ -115,17 +104,17 @@ impl Nodes {
     /// heading.
     fn steered(
         &self,
-        node: NodeId,
         towards: DVec2,
         left: usize,
-        (calls, callers): (&Calls, &dyn Callers),
+        (calls, callers): (CallsOf<'_>, &dyn Callers),
         metric: Metric,
     ) -> DVec2 {
+        let node = calls.node();
         let parent = self.graph.parent(node).filter(|_| self.web.is_tip(node));
         let mut way = towards;
         if let Some(parent) = parent.filter(|_| left > 1 && self.steering.straightens()) {
             let heading = metric.between(self.position(parent), self.position(node)).normalize();
-            let units = self.units(node, calls, callers, metric);
+            let units = self.units(calls, callers, metric);
             way = self.steering.ahead(&units[units.len() - left..], heading).normalize_or(towards);
         }
         self.steering.pulled(way)

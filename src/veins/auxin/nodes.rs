@@ -13,6 +13,10 @@ use crate::veins::graph::{NodeId, Rank, VeinGraph};
 /// rounding, far below what could be seen.
 pub(crate) const LEAST_BETWEEN_NODES: f64 = 1e-3;
 
+/// How wide cells are in which what is around a child is looked for (steps). In cells of one step there
+/// are more to look into, and laying veins takes a tenth longer.
+const CELL_STEPS: f64 = 2.0;
+
 /// What happens where a vein would cross another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
@@ -25,7 +29,7 @@ pub(super) enum Meeting {
 /// The veins so far.
 pub(super) struct Nodes {
     pub(super) graph: VeinGraph,
-    /// Cells of about a step: what is around a child.
+    /// Cells of a few steps: what is around a child.
     pub(super) near: PointGrid,
     /// Cells of about the spacing of sources: what is nearest to a source. Where veins do not join, it knows
     /// of new nodes only after [`follow`](Self::follow).
@@ -56,10 +60,10 @@ impl Nodes {
             Meeting::Join => 2.5 * step_mm,
         };
         let cell = |mm: f64| metric.reach(metric.length(mm)).max_element();
-        let web = Web::new(bounds, cell(step_mm));
+        let web = Web::new(bounds, cell(CELL_STEPS * step_mm));
         let mut nodes = Self {
             graph: start,
-            near: PointGrid::new(bounds, cell(step_mm)),
+            near: PointGrid::new(bounds, cell(CELL_STEPS * step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             longest_step_mm: match spec.longest_step {
@@ -112,7 +116,7 @@ impl Nodes {
     /// Follows the lengths as they shrink.
     pub(super) fn refine(&mut self, metric: Metric) {
         let positions = self.graph.positions();
-        let cell = metric.reach(metric.length(self.step_mm)).max_element();
+        let cell = metric.reach(metric.length(CELL_STEPS * self.step_mm)).max_element();
         self.near.refine(cell, positions);
         self.web.refine(cell, positions);
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element(), positions);

@@ -109,8 +109,9 @@ impl Sources {
     fn call_as_known(&mut self, blade: &GrowingBlade, step: u64, metric: Metric, nodes: &Nodes) {
         let mut acting = self.field.take_acting();
         let mut round = std::mem::take(&mut self.round);
-        let shares = round.begin(nodes.len(), acting.len());
+        let shares = round.shares(acting.len());
         for (acting, calls) in acting.iter_mut().zip(shares) {
+            calls.begin(nodes.len());
             acting.retain(|source| {
                 let Some(slot) = self.field.slot(source) else { return false };
                 let id = source as usize;

@@ -105,8 +105,11 @@ impl<'a> Supply<'a> {
             let problem = "is the index of a point that is not made of finite numbers";
             return Err(VeinError::setting("veins.sources_mm", i as f64, problem));
         }
-        let waits = |place: &[f64; 2]| waiting(blade, DVec2::from(*place));
-        supply.waiting = spec.sources_mm.par_iter().filter_map(waits).collect();
+        // To leave out at once those that are outside would move all others once more.
+        let outside = (u64::MAX, DVec2::NAN);
+        let waits = |place: &[f64; 2]| waiting(blade, DVec2::from(*place)).unwrap_or(outside);
+        supply.waiting = spec.sources_mm.par_iter().map(waits).collect();
+        supply.waiting.retain(|(_, place)| !place.is_nan());
         supply.outside = spec.sources_mm.len() - supply.waiting.len();
         Ok(supply)
     }
@@ -172,16 +175,18 @@ impl<'a> Supply<'a> {
             let bounds = self.blade.mature().bounds();
             // Among equals the first comes first.
             let key = |(i, &(birth, p)): (usize, &(u64, DVec2))| {
-                (birth.max(step), z_order(bounds, p), i as u32)
+                u128::from(birth.max(step)) << 64 | u128::from(z_order(bounds, p)) << 32 | i as u128
             };
-            let mut order: Vec<_> = self.waiting.par_iter().enumerate().map(key).collect();
+            let mut order: Vec<u128> = self.waiting.par_iter().enumerate().map(key).collect();
             order.par_sort_unstable();
-            let place = |&(.., i): &(u64, u32, u32)| self.waiting[i as usize];
+            let place = |&key: &u128| self.waiting[key as u32 as usize];
             self.waiting = order.par_iter().rev().map(place).collect();
         }
         let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
-        let born: Vec<DVec2> = self.waiting.drain(waits..).rev().map(|(_, p)| p).collect();
-        if !born.is_empty() {
+        if waits < self.waiting.len() {
+            let born = self.waiting[waits..].par_iter().rev().map(|&(_, p)| p);
+            let born: Vec<DVec2> = born.collect();
+            self.waiting.truncate(waits);
             calls.add_all(&born, nodes, metric);
         }
         if self.throws(age) {

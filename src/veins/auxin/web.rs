@@ -8,6 +8,7 @@ use super::NONE;
 use crate::geometry::Rect;
 use crate::geometry::polygon::{cross, segments_near};
 use crate::geometry::segment_grid::SegmentGrid;
+use crate::parallel;
 use crate::veins::graph::NodeId;
 use crate::veins::planar::CLEARANCE_MM;
 
@@ -35,8 +36,8 @@ impl Web {
     /// Makes room for so many more nodes, each with an edge.
     pub(super) fn expect(&mut self, more: usize) {
         self.grid.expect(more);
-        self.firsts.reserve(more);
-        self.links.reserve(2 * more);
+        parallel::make_room(&mut self.firsts, more, NONE);
+        parallel::make_room(&mut self.links, 2 * more, (NONE, NONE));
     }
 
     pub(super) fn add(&mut self, edge: Edge, positions: &[DVec2]) {

@@ -167,26 +167,8 @@ impl<'a> Supply<'a> {
                 self.check_number()?;
             }
         }
-        if !self.is_sorted {
-            self.is_sorted = true;
-            // Those of one step are born in order of place, so that sources which call in the order of
-            // their ids find what they know together in memory: at a million, more than twice as fast.
-            // Latest first, so that they can be popped.
-            let bounds = self.blade.mature().bounds();
-            // Among equals the first comes first.
-            let key = |(i, &(birth, p)): (usize, &(u64, DVec2))| {
-                u128::from(birth.max(step)) << 64 | u128::from(z_order(bounds, p)) << 32 | i as u128
-            };
-            let mut order: Vec<u128> = self.waiting.par_iter().enumerate().map(key).collect();
-            order.par_sort_unstable();
-            let place = |&key: &u128| self.waiting[key as u32 as usize];
-            self.waiting = order.par_iter().rev().map(place).collect();
-        }
-        let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
-        if waits < self.waiting.len() {
-            let born = self.waiting[waits..].par_iter().rev().map(|&(_, p)| p);
-            let born: Vec<DVec2> = born.collect();
-            self.waiting.truncate(waits);
+        let born = if self.is_sorted { self.due(step) } else { self.sort(step) };
+        if !born.is_empty() {
             calls.add_all(&born, nodes, metric);
         }
         if self.throws(age) {
@@ -210,6 +192,33 @@ impl<'a> Supply<'a> {
         }
         calls.keep_order(metric);
         Ok(())
+    }
+
+    /// Puts those that wait in order; takes out the places of those that are born in this step.
+    ///
+    /// Those of one step are born in order of place, so that sources which call in the order of their ids
+    /// find what they know together in memory: at a million, more than twice as fast.
+    fn sort(&mut self, step: u64) -> Vec<DVec2> {
+        self.is_sorted = true;
+        let bounds = self.blade.mature().bounds();
+        // Among equals the first comes first.
+        let key = |(i, &(birth, p)): (usize, &(u64, DVec2))| {
+            u128::from(birth.max(step)) << 64 | u128::from(z_order(bounds, p)) << 32 | i as u128
+        };
+        let mut order: Vec<u128> = self.waiting.par_iter().enumerate().map(key).collect();
+        order.par_sort_unstable();
+        let due = order.partition_point(|key| (key >> 64) as u64 <= step);
+        let place = |&key: &u128| self.waiting[key as u32 as usize];
+        let born = order[..due].par_iter().map(|key| place(key).1).collect();
+        // Latest first, so that they can be popped.
+        self.waiting = order[due..].par_iter().rev().map(place).collect();
+        born
+    }
+
+    /// Takes out the places of those that are born in this step.
+    fn due(&mut self, step: u64) -> Vec<DVec2> {
+        let waits = self.waiting.partition_point(|&(birth, _)| birth > step);
+        self.waiting.drain(waits..).rev().map(|(_, p)| p).collect()
     }
 
     /// Keeps others away from a source.

@@ -128,20 +128,41 @@ impl Cells {
             self.cut(bands, slots, &place);
         }
         let homes: Vec<u32> = slots.par_iter().map(|&slot| self.home(place(slot)) as u32).collect();
-        for &home in &homes {
-            self.starts[home as usize] += 1;
-        }
-        // From counts to ends; filling from the back turns ends into starts.
-        let mut end = 0;
-        for start in &mut self.starts {
-            end += *start;
-            *start = end;
-        }
+        // Each band by one thread, which looks through all for its own.
+        let is_own = |home: u32, cells: &Range<usize>| cells.contains(&(home as usize));
+        let bounds: Vec<usize> = self.bands.iter().map(|&column| self.rows * column).collect();
+        let mut starts = pieces(&mut self.starts, bounds.windows(2).map(|ends| ends[1] - ends[0]));
+        let bands = starts.par_iter_mut().zip(bounds.par_windows(2));
+        let count = |(starts, ends): (&mut &mut [u32], &[usize])| {
+            let (cells, mut sum) = (ends[0]..ends[1], 0);
+            for &home in homes.iter().filter(|&&home| is_own(home, &cells)) {
+                starts[home as usize - cells.start] += 1;
+                sum += 1;
+            }
+            sum
+        };
+        let sums: Vec<usize> = bands.map(count).collect();
         let mut order = vec![0; slots.len()];
-        for (&slot, &home) in slots.iter().zip(&homes).rev() {
-            let start = &mut self.starts[home as usize];
-            *start -= 1;
-            order[*start as usize] = slot;
+        let orders = pieces(&mut order, sums.iter().copied());
+        let firsts: Vec<usize> = (0..sums.len()).map(|band| sums[..band].iter().sum()).collect();
+        let bands = starts.into_par_iter().zip(bounds.par_windows(2));
+        bands.zip(orders).zip(firsts).for_each(|(((starts, ends), order), first)| {
+            let (cells, first) = (ends[0]..ends[1], first as u32);
+            // From counts to ends; filling from the back turns ends into starts.
+            let mut end = first;
+            for start in starts.iter_mut() {
+                end += *start;
+                *start = end;
+            }
+            let own = slots.iter().zip(&homes).rev().filter(|&(_, &home)| is_own(home, &cells));
+            for (&slot, &home) in own {
+                let start = &mut starts[home as usize - cells.start];
+                *start -= 1;
+                order[(*start - first) as usize] = slot;
+            }
+        });
+        if let Some(end) = self.starts.last_mut() {
+            *end = slots.len() as u32;
         }
         order
     }
@@ -167,4 +188,14 @@ impl Cells {
         std::iter::successors(head, move |&at| entry(self.nexts[at as usize]))
             .map(move |at| sorted + at as usize)
     }
+}
+
+/// A list cut into pieces of these lengths.
+fn pieces<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    let mut cut = |length| {
+        let (piece, rest) = std::mem::take(&mut list).split_at_mut(length);
+        list = rest;
+        piece
+    };
+    lengths.map(&mut cut).collect()
 }

@@ -60,6 +60,9 @@ pub(super) struct StalkAt {
 /// A straight midrib wanders by up to so many degrees beside its base.
 const STRAIGHT_DEG: f64 = 10.0;
 
+/// Over this share of its length the stalk turns back from where such a midrib leads it.
+const RETURN: f32 = 0.35;
+
 impl Stalk {
     /// The stalk of a leaf whose midrib runs from the base along `midrib` and has `neck` as its
     /// radius there (mm). It `leads` where the petiole goes on from it, bent as it is.
@@ -71,9 +74,9 @@ impl Stalk {
         let (mut points, mut radii, mut along) = Self::root(neck, midrib);
         let stem_radius = 0.5 * spec.width_mm;
         // A circular arc that leaves the blade along the midrib.
-        let turn = Angle::from_degrees(spec.bend_deg / PIECES as f64);
         let step = length / PIECES as f64;
-        let mut direction = if leads { Self::leaving(neck, midrib) } else { DVec2::NEG_Y };
+        let off_deg = if leads { Self::off_deg(neck, midrib) } else { 0.0 };
+        let wander_deg = off_deg.clamp(-STRAIGHT_DEG, STRAIGHT_DEG);
         let mut point = DVec2::ZERO;
         for i in 0..=PIECES {
             let t = i as f32 / PIECES as f32;
@@ -84,19 +87,19 @@ impl Stalk {
             points.push(point);
             radii.push((neck + (stem_radius - neck) * widening) * cushion);
             along.push(step * i as f64);
-            direction = DVec2::new(turn.cos(), turn.sin()).rotate(direction);
-            point += direction * step;
+            let t = (i + 1) as f32 / PIECES as f32;
+            let back = wander_deg * f64::from(smooth(0.0, RETURN, t));
+            let turned = Angle::from_degrees(off_deg - back + spec.bend_deg * f64::from(t));
+            point += DVec2::new(turned.cos(), turned.sin()).rotate(DVec2::NEG_Y) * step;
         }
         Self { points, radii, along }
     }
 
-    /// The direction in which it leaves the blade: down, or against a midrib that is bent at its base.
-    fn leaving(neck: f64, midrib: &[DVec2]) -> DVec2 {
+    /// How far a midrib is turned aside at its base (degrees, anticlockwise).
+    fn off_deg(neck: f64, midrib: &[DVec2]) -> f64 {
         let reach = ROOT_RADII * neck;
-        let Some(ahead) = midrib.iter().find(|p| p.length() >= reach) else { return DVec2::NEG_Y };
-        let off = DVec2::Y.angle_to(*ahead).to_degrees();
-        let bend = Angle::from_degrees(off - off.clamp(-STRAIGHT_DEG, STRAIGHT_DEG));
-        DVec2::new(bend.cos(), bend.sin()).rotate(DVec2::NEG_Y)
+        let ahead = midrib.iter().find(|p| p.length() >= reach);
+        ahead.map_or(0.0, |ahead| DVec2::Y.angle_to(*ahead).to_degrees())
     }
 
     /// The part along the midrib, from its thin end down to the base, which is not in it.
@@ -210,15 +213,26 @@ mod tests {
     #[test]
     fn a_midrib_bent_at_its_base_takes_the_petiole_along() {
         let spec = PetioleSpec { length_mm: 20.0, bend_deg: 0.0, ..PetioleSpec::default() };
-        let end = |off_deg: f64, leads: bool| {
+        let stalk = |off_deg: f64, leads: bool| {
             let (sine, cosine) = off_deg.to_radians().sin_cos();
             let midrib = [DVec2::ZERO, DVec2::new(sine, cosine) * 30.0];
-            Stalk::new(&spec, 0.4, &midrib, leads).end()
+            Stalk::new(&spec, 0.4, &midrib, leads)
         };
-        assert!(end(9.0, true).distance(DVec2::NEG_Y * 20.0) < 1e-9, "a straight one wanders");
-        assert!(end(40.0, false).distance(DVec2::NEG_Y * 20.0) < 1e-9, "one of several");
-        // 40° to the right above the base, 30° to the left below it.
-        let (sine, cosine) = 30.0_f64.to_radians().sin_cos();
-        assert!(end(40.0, true).distance(DVec2::new(-sine, -cosine) * 20.0) < 1e-9);
+        // To the left of straight down, where it leaves the blade and at its end.
+        let leans = |stalk: &Stalk| {
+            let lean = |i: usize| {
+                let way = stalk.points[i] - stalk.points[i - 1];
+                way.angle_to(DVec2::NEG_Y).to_degrees()
+            };
+            [lean(1), lean(PIECES)]
+        };
+        let several = stalk(40.0, false);
+        assert!(several.end().distance(DVec2::NEG_Y * 20.0) < 1e-9, "one of several");
+        for (off, [leaves, ends]) in [(9.0, [9.0, 0.0]), (-9.0, [-9.0, 0.0]), (40.0, [40.0, 30.0])]
+        {
+            let found = leans(&stalk(off, true));
+            assert!((found[0] - leaves).abs() < 0.2, "{off}: no kink below the blade, {found:?}");
+            assert!((found[1] - ends).abs() < 1e-9, "{off}: a straight one wanders, {found:?}");
+        }
     }
 }

@@ -145,6 +145,10 @@ pub(in crate::texture) struct Mixer {
     petiole_reach: f32,
 }
 
+/// At the base a vein of the first of these radii is in the tissue, one of the second has come out of it:
+/// shares of the way over which the midrib takes the petiole's colour, six radii of its own.
+const COMES_OUT: [f32; 2] = [0.04, 0.1];
+
 impl Mixer {
     pub(super) fn new(
         spec: &ColourSpec,
@@ -251,7 +255,11 @@ impl Mixer {
             for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
                 let tissue = strip.tissue(i);
                 let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
-                let share = 0.9 * near * tissue.veins_seen(face, self.mottle)[1];
+                // A vein is seen through the tissue over it, from which the petiole comes out.
+                let seen_through = tissue.veins_seen(face, self.mottle)[1];
+                let [some, all] = COMES_OUT.map(|share| share * self.petiole_reach);
+                let bare = near * smooth(some, all, tissue.vein.radius);
+                let share = near * (seen_through + (tissue.vein.cover - seen_through) * bare);
                 *seen = Shade::of(*seen).mixed(petiole, share).array();
             }
         }

@@ -36,6 +36,8 @@ pub(super) struct Calls {
     calls: Vec<Call>,
     /// The called nodes, ascending, each with its place in `called`.
     order: Vec<(NodeId, u32)>,
+    /// They themselves in that order: for whoever takes them over from another thread.
+    ascending: Vec<Called>,
 }
 
 impl Calls {
@@ -71,11 +73,8 @@ impl Calls {
         self.order.clear();
         self.order.extend(self.called.iter().map(|called| called.node).zip(0..));
         self.order.sort_unstable();
-    }
-
-    /// The called nodes, ascending.
-    fn ascending(&self) -> impl Iterator<Item = &Called> {
-        self.order.iter().map(|&(_, at)| &self.called[at as usize])
+        self.ascending.clear();
+        self.ascending.extend(self.order.iter().map(|&(_, at)| self.called[at as usize]));
     }
 
     /// Who calls a node, ascending.
@@ -114,7 +113,7 @@ impl Round {
         called.clear();
         ends.clear();
         for calls in &*shares {
-            called.extend(calls.ascending());
+            called.extend_from_slice(&calls.ascending);
             ends.push(called.len());
         }
         order.clear();

@@ -44,6 +44,7 @@ const CELLS_A_SOURCE: f64 = 4.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<S> {
     pub(super) id: u32,
+    pub(super) is_alive: bool,
     /// Whether it is in the list of those in reach, or about to be.
     pub(super) is_acting: bool,
     pub(super) state: S,
@@ -56,6 +57,7 @@ impl<S> Source<S> {
         let told = hear(&mut self.state);
         *bound2 = told.bound2;
         if told.bound2 == DEAD {
+            self.is_alive = false;
             news.dead.push(self.id);
             return;
         }
@@ -100,7 +102,8 @@ struct News {
 #[derive(Debug)]
 pub(super) struct Field<S> {
     bounds: Rect,
-    /// The slot of each source, by id; [`NONE`] for the dead.
+    /// The slot of each source, by id; [`NONE`] for those that were dead when they were last put in order:
+    /// whoever writes here takes what is read in every step out of the caches of the other threads.
     slots: Vec<u32>,
     places: Vec<DVec2>,
     /// By slot: from this far (squared) on a node does not matter; [`DEAD`] at the end.
@@ -153,8 +156,8 @@ impl<S: Copy + Send + Sync> Field<S> {
 
     /// Where a source stands, if it is alive.
     pub(super) fn slot(&self, id: u32) -> Option<usize> {
-        let slot = self.slots[id as usize];
-        (slot != NONE).then_some(slot as usize)
+        let slot = self.slots[id as usize] as usize;
+        self.sources.get(slot).is_some_and(|source| source.is_alive).then_some(slot)
     }
 
     pub(super) fn place(&self, slot: usize) -> DVec2 {
@@ -189,16 +192,16 @@ impl<S: Copy + Send + Sync> Field<S> {
 
     /// The slots of the living.
     pub(super) fn living_slots(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.places.len()).filter(|&slot| self.bound2[slot] != DEAD)
+        (0..self.places.len()).filter(|&slot| self.sources[slot].is_alive)
     }
 
     pub(super) fn kill(&mut self, slot: usize) {
         if self.bound2[slot] != DEAD {
             self.bound2[slot] = DEAD;
-            let id = self.sources[slot].id;
-            self.slots[id as usize] = NONE;
+            let source = &mut self.sources[slot];
+            source.is_alive = false;
             self.living -= 1;
-            self.dead.push(id);
+            self.dead.push(source.id);
         }
     }
 
@@ -331,9 +334,6 @@ impl<S: Copy + Send + Sync> Field<S> {
     pub(super) fn settle_news(&mut self) {
         let arrived = std::mem::take(&mut self.news.arrived);
         arrived.into_iter().for_each(|id| self.arrive(id));
-        for &id in &self.news.dead {
-            self.slots[id as usize] = NONE;
-        }
         self.living -= self.news.dead.len();
         self.dead.append(&mut self.news.dead);
     }

@@ -15,8 +15,9 @@ impl Acting {
         self.arrived.push(id);
     }
 
-    pub(super) fn append(&mut self, arrived: &mut Vec<u32>) {
-        self.arrived.append(arrived);
+    /// The list of those that came, for whoever finds out on the way that sources come, and back.
+    pub(super) fn lend(&mut self, arrived: &mut Vec<u32>) {
+        std::mem::swap(&mut self.arrived, arrived);
     }
 
     pub(in super::super) fn len(&self) -> usize {

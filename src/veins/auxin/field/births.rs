@@ -6,7 +6,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::cells::Cells;
-use super::{CELLS_A_SOURCE, DEAD, Field, IN_A_CELL, NEWBORN, Source, THINNED};
+use super::{CELLS_A_SOURCE, DEAD, Field, IN_A_CELL, NEWBORN, NONE, Source, THINNED};
 use crate::parallel;
 
 /// What a source knows of the nodes when it is born.
@@ -26,7 +26,8 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.cells.add(p);
         self.places.push(p);
         self.bound2.push(birth.bound2);
-        self.sources.push(Source { id, is_acting: birth.is_acting, state: birth.state });
+        let Birth { is_acting, state, .. } = birth;
+        self.sources.push(Source { id, is_alive: true, is_acting, state });
         self.living += 1;
         if birth.is_acting {
             self.acting[self.cells.band_of(p)].arrive(id);
@@ -59,7 +60,7 @@ impl<S: Copy + Send + Sync> Field<S> {
         self.sort(self.width(reach), reach, born, |field, slot| {
             let Some(nth) = slot.checked_sub(old) else { return field.in_slot(slot) };
             let Birth { bound2, is_acting, state } = bear(born[nth]);
-            (bound2, Source { id: first + nth as u32, is_acting, state })
+            (bound2, Source { id: first + nth as u32, is_alive: true, is_acting, state })
         });
         first..self.slots.len() as u32
     }
@@ -116,6 +117,9 @@ impl<S: Copy + Send + Sync> Field<S> {
         let alive =
             |slot: &u32| self.bound2.get(*slot as usize).is_none_or(|&bound2| bound2 != DEAD);
         let living: Vec<u32> = (0..(old + born.len()) as u32).filter(alive).collect();
+        for source in self.sources.iter().filter(|source| !source.is_alive) {
+            self.slots[source.id as usize] = NONE;
+        }
         let mut cells = Cells::new(self.bounds, width);
         let order = cells.sort(bands, &living, place);
         let places: Vec<DVec2> = order.par_iter().map(|&slot| place(slot)).collect();

@@ -231,6 +231,9 @@ impl<S: Copy + Send + Sync> Field<S> {
         for (part, (finds, news)) in parts.iter_mut().zip(self.finds.drain(..)) {
             (part.finds, part.news) = (finds, news);
         }
+        for (part, acting) in parts.iter_mut().zip(&mut self.acting) {
+            acting.lend(&mut part.news.arrived);
+        }
         let fresh = Fresh { first, places: fresh, search, metric };
         let (sorted, newborn) = parts.split_at_mut(bands);
         let tell = |part: &mut Part<'_, S>| part.tell_all(fresh, &hear);
@@ -242,7 +245,7 @@ impl<S: Copy + Send + Sync> Field<S> {
         newborn.iter_mut().for_each(tell);
         for (band, Part { finds, mut news, .. }) in parts.into_iter().enumerate() {
             match self.acting.get_mut(band) {
-                Some(acting) => acting.append(&mut news.arrived),
+                Some(acting) => acting.lend(&mut news.arrived),
                 None => self.news.arrived.append(&mut news.arrived),
             }
             self.news.dead.append(&mut news.dead);

@@ -131,10 +131,7 @@ impl Nodes {
         step: u64,
         metric: Metric,
     ) -> Option<NodeId> {
-        let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
-        let around = metric.around(place, least);
-        let is_there = |_, q| metric.distance_squared(place, q) < least * least;
-        let is_free = !self.near.any_near(self.positions(), place, around, is_there)
+        let is_free = !self.is_taken(place, metric)
             && blade.is_inside(place, step)
             && !blade.blocks_sight(self.position(node), place, step)
             && !self.overlaps(node, place, metric)
@@ -162,11 +159,12 @@ impl Nodes {
         let others = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
         let reach = metric.around(child, LEAST_BETWEEN_CHILDREN * length);
         let graph = &self.graph;
-        let taken = self.near.any_near(graph.positions(), child, reach, |id, q| {
+        let takes = |id: NodeId, q: DVec2| {
             let d2 = metric.distance_squared(child, q);
             d2 < others || (d2 < siblings && graph.parent(id) == Some(node))
-        });
-        if taken {
+        };
+        let met = self.web.met(from, child, reach, [node, node], takes, graph.positions());
+        if met.is_taken {
             return Sprout::Taken;
         }
         if !blade.is_inside(child, step) || blade.blocks_sight(from, child, step) {
@@ -175,7 +173,7 @@ impl Nodes {
         if self.overlaps(node, child, metric) {
             return Sprout::Taken;
         }
-        if let Some(edge) = self.crossed(from, child, [node, node]) {
+        if let Some(edge) = met.edge {
             if self.meeting == Meeting::Join {
                 self.join_edge(node, edge, blade, step, metric);
             }
@@ -221,16 +219,13 @@ impl Nodes {
         step: u64,
         metric: Metric,
     ) {
-        let length = metric.length(self.step_mm);
-        let least2 = (LEAST_BETWEEN_NODES * length) * (LEAST_BETWEEN_NODES * length);
+        let least2 = self.least_between(metric).powi(2);
         // A vein that has come to the very place needs no child there.
         let there = arrivals
             .iter()
             .copied()
             .find(|&node| metric.distance_squared(self.position(node), place) < least2);
-        let reach = metric.around(place, LEAST_BETWEEN_NODES * length);
-        let is_there = |_, q| metric.distance_squared(place, q) < least2;
-        if there.is_none() && self.near.any_near(self.positions(), place, reach, is_there) {
+        if there.is_none() && self.is_taken(place, metric) {
             return;
         }
         let place = there.map_or(place, |node| self.position(node));

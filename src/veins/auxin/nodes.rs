@@ -13,8 +13,8 @@ use crate::veins::graph::{NodeId, Rank, VeinGraph};
 /// rounding, far below what could be seen.
 pub(crate) const LEAST_BETWEEN_NODES: f64 = 1e-3;
 
-/// How wide cells are in which what is around a child is looked for (steps). In cells of one step there
-/// are more to look into, and laying veins takes a tenth longer.
+/// How wide cells are in which what a step meets is looked for (steps). In cells of one step there are
+/// more to look into, and laying veins takes a tenth longer.
 const CELL_STEPS: f64 = 2.0;
 
 /// What happens where a vein would cross another.
@@ -29,8 +29,6 @@ pub(super) enum Meeting {
 /// The veins so far.
 pub(super) struct Nodes {
     pub(super) graph: VeinGraph,
-    /// Cells of a few steps: what is around a child.
-    pub(super) near: PointGrid,
     /// Cells of about the spacing of sources: what is nearest to a source. Where veins do not join, it knows
     /// of new nodes only after [`follow`](Self::follow).
     far: PointGrid,
@@ -63,7 +61,6 @@ impl Nodes {
         let web = Web::new(bounds, cell(CELL_STEPS * step_mm));
         let mut nodes = Self {
             graph: start,
-            near: PointGrid::new(bounds, cell(CELL_STEPS * step_mm)),
             far: PointGrid::new(bounds, cell(far_cell_mm)),
             step_mm,
             longest_step_mm: match spec.longest_step {
@@ -76,19 +73,19 @@ impl Nodes {
             meeting,
             steering: Steering::new(spec, 0.0),
         };
-        for &node in nodes.graph.positions() {
-            nodes.near.push(node);
-            nodes.far.push(node);
-        }
-        let edges = nodes.graph.edges().chain(nodes.graph.joins().iter().copied());
-        edges.for_each(|edge| nodes.web.add(edge, nodes.graph.positions()));
+        let Self { graph, far, web, .. } = &mut nodes;
+        let positions = graph.positions();
+        positions.iter().for_each(|&p| _ = far.push(p));
+        let is_root = |&node: &NodeId| graph.parent(node).is_none();
+        (0..graph.len() as NodeId).filter(is_root).for_each(|root| web.add_root(root, positions));
+        let edges = graph.edges().chain(graph.joins().iter().copied());
+        edges.for_each(|edge| web.add(edge, positions));
         nodes
     }
 
     /// Makes room for so many more nodes: what grows in place of this would be copied time and again.
     pub(super) fn expect(&mut self, more: usize) {
         self.graph.reserve(more);
-        self.near.expect(more);
         self.far.expect(more);
         self.web.expect(more);
     }
@@ -117,7 +114,6 @@ impl Nodes {
     pub(super) fn refine(&mut self, metric: Metric) {
         let positions = self.graph.positions();
         let cell = metric.reach(metric.length(CELL_STEPS * self.step_mm)).max_element();
-        self.near.refine(cell, positions);
         self.web.refine(cell, positions);
         self.far.refine(metric.reach(metric.length(self.far_cell_mm)).max_element(), positions);
     }
@@ -217,7 +213,6 @@ impl Nodes {
     /// Makes a child where there is room for it.
     pub(super) fn add(&mut self, parent: NodeId, p: DVec2) -> NodeId {
         let node = self.graph.sprout(parent, p);
-        self.near.push(p);
         if self.meeting == Meeting::Join {
             self.far.push(p);
         }
@@ -230,6 +225,18 @@ impl Nodes {
         self.web.add((a, b), self.graph.positions());
     }
 
+    /// A node nearer than this to any other would stand in the same place.
+    pub(super) fn least_between(&self, metric: Metric) -> f64 {
+        LEAST_BETWEEN_NODES * metric.length(self.step_mm)
+    }
+
+    /// Whether a node stands in a place already.
+    pub(super) fn is_taken(&self, place: DVec2, metric: Metric) -> bool {
+        let least = self.least_between(metric);
+        let is_there = |_, q| metric.distance_squared(place, q) < least * least;
+        self.web.any_node_near(place, metric.around(place, least), is_there, self.positions())
+    }
+
     pub(super) fn crossed(&self, p: DVec2, q: DVec2, apart: [NodeId; 2]) -> Option<Edge> {
         self.web.crossed(p, q, apart, self.graph.positions())
     }
@@ -237,7 +244,7 @@ impl Nodes {
     /// Whether an edge from a node would lie on one that it has: back along it, or the same way
     /// again with a step that has become shorter.
     pub(super) fn overlaps(&self, node: NodeId, p: DVec2, metric: Metric) -> bool {
-        let least = LEAST_BETWEEN_NODES * metric.length(self.step_mm);
+        let least = self.least_between(metric);
         let from = self.position(node);
         let way = |p: DVec2| metric.between(from, p);
         self.web.overlaps(node, p, least, way, self.graph.positions())

@@ -78,8 +78,9 @@ impl Stalk {
         let off_deg = if leads { Self::off_deg(neck, midrib) } else { 0.0 };
         let wander_deg = off_deg.clamp(-STRAIGHT_DEG, STRAIGHT_DEG);
         let mut point = DVec2::ZERO;
+        let share = |pieces: usize| pieces as f32 / PIECES as f32;
         for i in 0..=PIECES {
-            let t = i as f32 / PIECES as f32;
+            let t = share(i);
             // Most of the widening right below the blade, then a slow taper.
             let widening = f64::from(0.6 * smooth(0.0, 0.55, t) + 0.4 * t);
             // The cushion by which it sits on the stem.
@@ -87,9 +88,9 @@ impl Stalk {
             points.push(point);
             radii.push((neck + (stem_radius - neck) * widening) * cushion);
             along.push(step * i as f64);
-            let t = (i + 1) as f32 / PIECES as f32;
-            let back = wander_deg * f64::from(smooth(0.0, RETURN, t));
-            let turned = Angle::from_degrees(off_deg - back + spec.bend_deg * f64::from(t));
+            let next = share(i + 1);
+            let back = wander_deg * f64::from(smooth(0.0, RETURN, next));
+            let turned = Angle::from_degrees(off_deg - back + spec.bend_deg * f64::from(next));
             point += DVec2::new(turned.cos(), turned.sin()).rotate(DVec2::NEG_Y) * step;
         }
         Self { points, radii, along }

@@ -251,13 +251,13 @@ impl Mixer {
     /// The midrib takes the petiole's colour at the base.
     fn add_petiole(&self, strip: &Strip, sides: [&mut Shades; 2]) {
         let petiole = shade(self.petiole, 0.3);
+        let [some, all] = COMES_OUT.map(|share| share * self.petiole_reach);
         for (shades, face) in sides.into_iter().zip([&FRONT, &BACK]) {
             for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
                 let tissue = strip.tissue(i);
                 let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
                 // A vein is seen through the tissue over it, from which the petiole comes out.
                 let seen_through = tissue.veins_seen(face, self.mottle)[1];
-                let [some, all] = COMES_OUT.map(|share| share * self.petiole_reach);
                 let bare = near * smooth(some, all, tissue.vein.radius);
                 let share = near * (seen_through + (tissue.vein.cover - seen_through) * bare);
                 *seen = Shade::of(*seen).mixed(petiole, share).array();

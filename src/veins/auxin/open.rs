@@ -100,6 +100,15 @@ impl Sources {
         self.deforms && !self.warps
     }
 
+    /// What sources that are born are to know of the nodes.
+    fn knowledge(&self, metric: Metric) -> Knowledge {
+        Knowledge {
+            limit2: self.ranges.search2(metric),
+            bounds_others: self.bounds_others(),
+            warps: self.warps,
+        }
+    }
+
     /// Whether whom a source calls stays so until a new node comes.
     fn keeps_views(&self) -> bool {
         self.tiles.is_some() && !self.deforms && !self.warps
@@ -229,13 +238,18 @@ impl Sources {
     }
 }
 
-/// What a source at `p` knows when it is born: of nodes as far as `limit2`.
-fn birth(
-    p: DVec2,
-    nodes: &Nodes,
-    metric: Metric,
-    (limit2, bounds_others, warps): (f64, bool, bool),
-) -> Birth<Claim> {
+/// What sources know of the nodes when they are born.
+#[derive(Debug, Clone, Copy)]
+struct Knowledge {
+    /// Of those as far as this (squared).
+    limit2: f64,
+    bounds_others: bool,
+    warps: bool,
+}
+
+/// A source at `p` when it is born.
+fn birth(p: DVec2, nodes: &Nodes, metric: Metric, knows: Knowledge) -> Birth<Claim> {
+    let Knowledge { limit2, bounds_others, warps } = knows;
     let found = nodes.nearest(p, metric, limit2);
     let mut claim = Claim::none(limit2);
     if let Some(nearest) = found {
@@ -267,14 +281,13 @@ impl Callers for Sources {
 
     fn add_all(&mut self, places: &[DVec2], nodes: &Nodes, metric: Metric) {
         let reach = metric.reach(self.ranges.search(metric));
-        let knows = (self.ranges.search2(metric), self.bounds_others(), self.warps);
+        let knows = self.knowledge(metric);
         let born = self.field.add_all(places, reach, A_THREAD, |p| birth(p, nodes, metric, knows));
         self.note_births(born, metric);
     }
 
     fn add(&mut self, p: DVec2, nodes: &Nodes, metric: Metric) {
-        let knows = (self.ranges.search2(metric), self.bounds_others(), self.warps);
-        let id = self.field.add(p, birth(p, nodes, metric, knows));
+        let id = self.field.add(p, birth(p, nodes, metric, self.knowledge(metric)));
         self.note_births(id..id + 1, metric);
     }
 

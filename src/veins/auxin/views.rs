@@ -1,5 +1,4 @@
-//! Whom sources call where that stays so until a new node comes: without a reach, on a blade that keeps
-//! its proportions.
+//! Calling without a reach, on a blade that keeps its proportions.
 
 use glam::DVec2;
 

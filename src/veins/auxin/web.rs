@@ -216,3 +216,71 @@ fn way_to(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> f64 {
     let (before, after) = (cross(a, b, p), cross(a, b, q));
     if before == after { 0.0 } else { before / (before - after) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::{Rng, Seed, Stage};
+
+    /// Veins of short steps from a few roots, some of which stay alone, with joins here and there.
+    fn web(rng: &mut Rng) -> (Web, Vec<DVec2>, Vec<Edge>) {
+        let mut web = Web::new(Rect { min: DVec2::ZERO, max: DVec2::ONE }, 0.1);
+        let mut positions: Vec<DVec2> =
+            (0..8).map(|_| DVec2::new(rng.unit(), rng.unit())).collect();
+        (0..8).for_each(|root| web.add_root(root, &positions));
+        let mut edges = Vec::new();
+        for child in 8..200 {
+            let parent = 3 + (rng.unit() * f64::from(child - 3)) as NodeId;
+            let way = DVec2::from_angle(rng.between(0.0, std::f64::consts::TAU));
+            positions.push(positions[parent as usize] + 0.05 * way);
+            edges.push((parent, child));
+            web.add((parent, child), &positions);
+            if child % 20 == 0 {
+                edges.push((child - 1, child));
+                web.add((child - 1, child), &positions);
+            }
+        }
+        (web, positions, edges)
+    }
+
+    #[test]
+    fn a_step_meets_what_a_look_at_everything_finds() {
+        let mut rng = Seed(3).stream(Stage::Tissue);
+        let (web, positions, edges) = web(&mut rng);
+        let (mut taken, mut stopped) = (0, 0);
+        for _ in 0..2000 {
+            let from = (rng.unit() * positions.len() as f64) as NodeId;
+            let p = positions[from as usize];
+            let q = p + 0.05 * DVec2::from_angle(rng.between(0.0, std::f64::consts::TAU));
+            let near = |_: NodeId, other: DVec2| other.distance(q) < 0.02;
+            let met = web.met(p, q, DVec2::splat(0.02), [from, from], near, &positions);
+            let is_taken = positions.iter().any(|&other| near(0, other));
+            let ends = |edge: Edge| (positions[edge.0 as usize], positions[edge.1 as usize]);
+            let in_the_way = |&(a, b): &Edge| {
+                let (c, d) = ends((a, b));
+                a != from && b != from && segments_near(p, q, c, d, CLEARANCE_MM)
+            };
+            let way = |edge: Edge| way_to(p, q, ends(edge).0, ends(edge).1);
+            let first = edges.iter().copied().filter(in_the_way);
+            let first = first.min_by(|&a, &b| way(a).total_cmp(&way(b)));
+            assert_eq!(met, Met { is_taken, edge: first });
+            assert_eq!(web.any_node_near(q, DVec2::splat(0.02), near, &positions), is_taken);
+            taken += usize::from(is_taken);
+            stopped += usize::from(first.is_some());
+        }
+        assert!(taken > 100 && stopped > 100, "{taken} taken, {stopped} stopped");
+    }
+
+    #[test]
+    fn a_root_is_found_though_no_edge_leads_to_it() {
+        let positions = [DVec2::splat(0.5), DVec2::splat(0.9)];
+        let mut web = Web::new(Rect { min: DVec2::ZERO, max: DVec2::ONE }, 0.1);
+        (0..2).for_each(|root| web.add_root(root, &positions));
+        let is_there = |node: NodeId, _: DVec2| node == 0;
+        let near = |p| web.any_node_near(p, DVec2::splat(0.01), is_there, &positions);
+        assert!(near(positions[0]) && !near(positions[1]));
+        // It is no vein: it is in nobody's way and beside nobody, itself neither.
+        assert_eq!(web.crossed(DVec2::ZERO, DVec2::ONE, [NONE, NONE], &positions), None);
+        assert!(web.is_tip(0) && !web.are_beside(0, 0));
+    }
+}

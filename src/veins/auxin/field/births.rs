@@ -45,13 +45,14 @@ impl<S: Copy + Send + Sync> Field<S> {
         bear: impl Fn(DVec2) -> Birth<S> + Sync,
     ) -> Range<u32> {
         let first = self.slots.len() as u32;
+        let ids = first..first + born.len() as u32;
         if !self.is_stale(born.len()) {
             let births: Vec<Birth<S>> =
                 born.par_iter().with_min_len(a_thread).map(|&p| bear(p)).collect();
             for (&p, birth) in born.iter().zip(births) {
                 self.add(p, birth);
             }
-            return first..self.slots.len() as u32;
+            return ids;
         }
         // Straight into their cells: to bear them first and then put them in order would move all once more.
         let old = self.places.len();
@@ -62,7 +63,7 @@ impl<S: Copy + Send + Sync> Field<S> {
             let Birth { bound2, is_acting, state } = bear(born[nth]);
             (bound2, Source { id: first + nth as u32, is_alive: true, is_acting, state })
         });
-        first..self.slots.len() as u32
+        ids
     }
 
     /// Puts the sources in order of place once enough were born or died since, for searches that

@@ -45,7 +45,7 @@ pub fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T
 ///
 /// Growing one leaf hands out pieces of some tens of microseconds, several in every step: less than a thread
 /// takes to wake. Costs the time of up to three threads for as long as the work takes, so it is for one leaf
-/// at a time and pays where growth of closed venation takes most of it (0.67 of the time on two threads at a
+/// at a time and pays where growth of closed venation takes most of it (0.65 of the time on two threads at a
 /// million sources); leaves of a batch are pieces large enough. Results do not depend on it.
 pub fn awake<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     /// Lets the threads go, also when the work panics.

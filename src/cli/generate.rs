@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use serde::Serialize;
-use venation::document::{Document, Value};
+use venation::document::{Comments, Document, Value};
 use venation::io::batch::{self, Shard};
 use venation::io::write::{Overwrite, write_files};
 use venation::io::{self, LeafFiles};
 use venation::pipeline;
 use venation::seed::Seed;
+use venation::veins::{Algorithm, Unreached};
 
 use super::leaf_args::LeafArgs;
 use super::output_args::OutputArgs;
@@ -85,6 +86,29 @@ struct Made {
     files: Vec<String>,
     nodes: usize,
     unreached_sources: usize,
+    /// What is to be said of it.
+    #[serde(skip)]
+    note: Option<String>,
+}
+
+/// When so large a share of the sources stays without a vein, a part of the blade is bare.
+const BARE: f64 = 0.05;
+
+/// What is to be said of a leaf of which so many of the auxin sources were not reached.
+fn note(sources: usize, unreached: &Unreached) -> Option<String> {
+    let count = unreached.total();
+    if count as f64 <= BARE * sources as f64 {
+        return None;
+    }
+    let text = unreached.to_string();
+    let (_, reasons) = text.split_once(": ").unwrap_or_default();
+    let advice = match unreached.unfinished {
+        0 => "",
+        _ => {
+            "; with more growth.total_steps or longer steps (veins.longest_step = 0) veins come farther"
+        }
+    };
+    Some(format!("no vein reached {count} of {sources} auxin sources ({reasons}){advice}"))
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -112,6 +136,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         return plan(args, context, &batch, &todo);
     }
     tell_shortfalls(&document, context, &todo);
+    tell_unused(context, &todo);
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
     let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
@@ -131,6 +156,8 @@ struct Batch {
     jobs: Vec<Job>,
     /// Where its manifest goes, if it has one.
     manifest: Option<PathBuf>,
+    /// Of a shard, the hash of the run that it is a shard of.
+    run_sha256: Option<String>,
 }
 
 impl Batch {
@@ -138,6 +165,8 @@ impl Batch {
         let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
         let single = args.seeds.is_none() && args.shard.is_none();
         let alone = seeds.len() == 1;
+        let run_sha256 =
+            args.shard.map(|_| io::run_sha256(&document.to_toml(Comments::None), &seeds));
         let jobs: Vec<Job> = seeds
             .into_iter()
             .enumerate()
@@ -152,7 +181,7 @@ impl Batch {
             (None, None) => None,
         };
         let manifest = root.filter(|_| !single).map(|root| root.join(file));
-        Ok(Self { jobs, manifest })
+        Ok(Self { jobs, manifest, run_sha256 })
     }
 
     /// Writes the batch's manifest: what is there now of every leaf.
@@ -162,6 +191,7 @@ impl Batch {
             problems.iter().find(|(of, _)| *of == seed).map(|(_, problem)| problem.clone())
         };
         let mut lines: Vec<_> = self.jobs.iter().map(|job| job.line(problem(job.seed))).collect();
+        lines.iter_mut().for_each(|line| line.run_sha256.clone_from(&self.run_sha256));
         lines.extend(batch::others(path, &lines).map_err(Failure::Input)?);
         super::save(path, batch::to_jsonl(&lines).into_bytes())
     }
@@ -186,6 +216,20 @@ fn tell_shortfalls(document: &Document, context: &Context<'_>, todo: &[(&Job, Ov
     }
 }
 
+/// Says which settings play no part.
+fn tell_unused(context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
+    let is_unused = |job: &Job| {
+        let veins = &job.spec.veins;
+        veins.algorithm == Algorithm::Particles && !veins.sources_mm.is_empty()
+    };
+    if todo.iter().any(|(job, _)| is_unused(job)) {
+        context.say(
+            "veins.sources_mm: auxin sources play no part where veins are trails of particles, \
+             which start from veins.particles.pattern",
+        );
+    }
+}
+
 /// Says what a run would write and what it would leave alone.
 fn plan(
     args: &Args,
@@ -204,9 +248,10 @@ fn plan(
             files: job.names(),
             nodes: 0,
             unreached_sources: 0,
+            note: None,
         })
         .collect();
-    tell(args, context, batch, &planned, batch.jobs.len() - todo.len())
+    tell(args, context, batch.manifest.as_deref(), &planned, batch.jobs.len() - todo.len())
 }
 
 pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
@@ -249,6 +294,7 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
         files: files.into_iter().map(|(name, _)| name).collect(),
         nodes: leaf.grown.venation.graph().len(),
         unreached_sources: leaf.grown.venation.unreached().total(),
+        note: note(leaf.grown.venation.sources(), &leaf.grown.venation.unreached()),
     })
 }
 
@@ -294,15 +340,26 @@ fn report(
                     files: Vec::new(),
                     nodes: 0,
                     unreached_sources: 0,
+                    note: None,
                 });
                 failures.push(failure);
             }
         }
     }
-    if failures.len() < all || all == 0 {
+    let is_sealed = failures.len() < all || all == 0;
+    if is_sealed {
         batch.seal(&problems)?;
     }
-    tell(args, context, batch, &list, skipped)?;
+    let manifest = batch.manifest.as_deref().filter(|_| is_sealed);
+    tell(args, context, manifest, &list, skipped)?;
+    let notes: Vec<&String> = list.iter().filter_map(|made| made.note.as_ref()).collect();
+    match &notes[..] {
+        [] => {}
+        [note] if all == 1 => context.say(note),
+        [note, ..] => {
+            context.say(&format!("in {} of {all} leaves, as the first: {note}", notes.len()));
+        }
+    }
     if skipped > 0 {
         context.say(&format!("{skipped} of {} leaves were there already", batch.jobs.len()));
     }
@@ -317,11 +374,11 @@ fn report(
 fn tell(
     args: &Args,
     context: &mut Context<'_>,
-    batch: &Batch,
+    manifest: Option<&Path>,
     list: &[Made],
     skipped: usize,
 ) -> Result<(), Failure> {
-    let manifest = batch.manifest.as_deref().map(shown);
+    let manifest = manifest.map(shown);
     if args.run.json {
         let version = env!("CARGO_PKG_VERSION");
         let document = serde_json::json!({

@@ -210,11 +210,18 @@ pub(crate) fn run() -> Result<(), Failure> {
     }
 }
 
-/// Refuses when a file that would be written is there already, unless forced.
+/// Refuses when a file that would be written is there already, unless forced, and when two that would be
+/// written are one.
 fn refuse_existing<'a>(
     paths: impl IntoIterator<Item = &'a PathBuf>,
     force: bool,
 ) -> Result<(), Failure> {
+    let paths: Vec<_> = paths.into_iter().collect();
+    let twice = paths.iter().enumerate().find(|(i, path)| paths[..*i].contains(path));
+    if let Some((_, path)) = twice {
+        let problem = format!("{}: two outputs cannot be one file; name another", path.display());
+        return Err(Failure::Input(problem));
+    }
     match paths.into_iter().find(|path| !force && path.exists()) {
         Some(path) => {
             let problem = format!("{}: exists already; --force overwrites", path.display());

@@ -154,6 +154,20 @@ mod tests {
     use crate::seed::{Seed, Stage};
 
     #[test]
+    fn a_single_point_and_a_line_take_few_cells() {
+        let cells = |size: DVec2| {
+            let bounds = Rect { min: DVec2::ONE, max: DVec2::ONE + size };
+            let cells = BoxCells::new(bounds, 0.0, std::iter::once(bounds));
+            let mut met = 0;
+            cells.for_each_meeting(bounds, |_| met += 1);
+            assert_eq!(met, 1);
+            cells.columns * cells.rows
+        };
+        assert_eq!(cells(DVec2::ZERO), 1);
+        assert!(cells(DVec2::Y) as f64 <= MAX_CELLS + 1.0);
+    }
+
+    #[test]
     fn the_cells_find_every_box_that_meets_once() {
         let mut rng = Seed(8).stream(Stage::Tissue);
         let mut drawn = |size: f64| {

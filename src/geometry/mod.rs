@@ -65,7 +65,10 @@ impl Rect {
     /// The least width of square cells, from `cell` on, of which at most so many lie over the box and in
     /// one of its rows.
     fn cell_width(&self, cell: f64, most: f64) -> f64 {
-        let size = self.size().max(DVec2::splat(f64::MIN_POSITIVE));
+        let size = self.size();
+        // Over a single point any width will do; the least ones would make billions of cells.
+        let least = if size.max_element() > 0.0 { f64::MIN_POSITIVE } else { 1.0 };
+        let size = size.max(DVec2::splat(least));
         cell.max((size.x * size.y / most).sqrt()).max(size.max_element() / most)
     }
 

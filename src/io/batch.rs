@@ -78,6 +78,9 @@ pub struct BatchLine {
     pub folder: String,
     /// Of its settings: two leaves with the same are the same.
     pub settings_sha256: String,
+    /// In the manifest of a shard, the hash of the run that it is a shard of.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub run_sha256: Option<String>,
     /// Why there is none.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub problem: Option<String>,
@@ -110,6 +113,7 @@ impl BatchLine {
             name: manifest.name.clone(),
             folder: folder.to_owned(),
             settings_sha256: manifest.settings_sha256.clone(),
+            run_sha256: None,
             problem: None,
             files: files.collect(),
         }
@@ -139,6 +143,7 @@ pub fn others(path: &Path, made: &[BatchLine]) -> Result<Vec<BatchLine>, String>
     }
     let mut lines = read(path)?;
     lines.retain(|line| made.iter().all(|own| own.folder != line.folder));
+    lines.iter_mut().for_each(|line| line.run_sha256 = None);
     Ok(lines)
 }
 
@@ -188,17 +193,29 @@ pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
 ///
 /// # Errors
 ///
-/// A manifest that cannot be read; shards of different batches; a shard that is missing; two that
-/// disagree about a leaf. In words that name the files.
+/// A manifest that cannot be read; shards of different batches or runs; a shard that is missing; two
+/// that disagree about a leaf. In words that name the files.
 pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
     let mut merged: BTreeMap<String, (BatchLine, &Path)> = BTreeMap::new();
     let mut shards: Vec<(Shard, &Path)> = Vec::new();
+    let mut run: Option<(String, &Path)> = None;
     for file in files {
         let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
         if let Some(shard) = name.and_then(|name| Shard::of_file(&name)) {
             shards.push((shard, file));
         }
-        for line in read(file)? {
+        for mut line in read(file)? {
+            if let Some(own) = line.run_sha256.take() {
+                let (first, from) = run.get_or_insert_with(|| (own.clone(), file));
+                if *first != own {
+                    return Err(format!(
+                        "{} and {} are shards of different runs: give all of them the same leaf, \
+                         settings and seeds",
+                        from.display(),
+                        file.display()
+                    ));
+                }
+            }
             if let Some((other, from)) = merged.get(&line.folder)
                 && *other != line
             {

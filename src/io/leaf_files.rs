@@ -88,6 +88,12 @@ pub fn settings_sha256(spec_toml: &str) -> String {
     sha256(spec_toml.lines().filter(which).collect::<Vec<_>>().join("\n").as_bytes())
 }
 
+/// The hash of a run: of its settings, before any seed has chosen from them, and of its seeds.
+#[must_use]
+pub fn run_sha256(document_toml: &str, seeds: &[u64]) -> String {
+    sha256(format!("{document_toml}\n{seeds:?}").as_bytes())
+}
+
 /// What is in a file.
 #[derive(Debug, Clone, Copy)]
 enum Content {

@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 
 pub use crate::spec::FormatKind;
 pub use crate::texture::map::MapKind;
-pub use leaf_files::{LeafFiles, encode_leaf, file_names, settings_sha256};
+pub use leaf_files::{LeafFiles, encode_leaf, file_names, run_sha256, settings_sha256};
 
 /// The program and its version, as every file names its maker.
 pub const GENERATOR: &str = concat!("venation ", env!("CARGO_PKG_VERSION"));

@@ -59,9 +59,27 @@ fn merging_says_what_is_missing_and_refuses_shards_of_other_runs() {
     assert!(message.contains("manifest.0001-of-0002.jsonl missing"), "{message}");
     shard("out", "1/2", &[]);
     succeed(folder.path(), &["merge", "out"]);
-    // The same seeds with other settings.
+    // The same seeds with other settings, other seeds, another leaf.
     shard("other", "0/2", &["--set", "texture.gutter=0.1"]);
-    let message = fail(folder.path(), 2, &["merge", "out", "other"]);
+    let seeds = ["generate", "beech", "--seeds", "1-6", "-o", "more", "--shard", "0/2"];
+    let leaf = ["generate", "linden", "--seeds", "1-4", "-o", "linden", "--shard", "0/2"];
+    succeed(folder.path(), &small(&seeds));
+    succeed(folder.path(), &small(&leaf));
+    for first in ["other", "more", "linden"] {
+        let first = format!("{first}/manifest.0000-of-0002.jsonl");
+        let second = "out/manifest.0001-of-0002.jsonl";
+        let message = fail(folder.path(), 2, &["merge", &first, second]);
+        assert!(message.contains("shards of different runs"), "{message}");
+        assert!(message.contains(&first) && message.contains(second), "{message}");
+    }
+    // Manifests that are no shards', and do not agree.
+    for (out, gutter) in [("a", "0.1"), ("b", "0.2")] {
+        let gutter = format!("texture.gutter={gutter}");
+        let batch = ["generate", "beech", "--seeds", "1,2", "-o", out, "--set", &gutter];
+        succeed(folder.path(), &small(&batch));
+    }
+    let both = ["merge", "a/manifest.jsonl", "b/manifest.jsonl", "-o", "both.jsonl"];
+    let message = fail(folder.path(), 2, &both);
     assert!(message.contains("disagree about fagus-sylvatica_s0001"), "{message}");
     for (wrong, expected) in [("3/2", "i is at most n"), ("1", "not i/n"), ("1/0", "0 shards")] {
         let arguments = ["generate", "beech", "--seeds", "1-4", "--shard", wrong];
@@ -327,4 +345,16 @@ fn the_readmes_job_template_runs() {
             assert_eq!(path.metadata().unwrap().len(), file["bytes"].as_u64().unwrap());
         }
     }
+}
+
+#[test]
+fn a_manifest_that_could_not_be_written_is_not_listed() {
+    let folder = fresh();
+    std::fs::write(folder.path().join("taken"), "a file").unwrap();
+    let batch = ["generate", "beech", "--seeds", "1,2", "-o", "taken"];
+    let (code, listed, message) = run(folder.path(), &small(&batch));
+    assert_eq!((code, listed.as_str()), (4, ""), "{message}");
+    assert!(message.contains("taken"), "{message}");
+    let (_, told, _) = run(folder.path(), &small(&[&batch[..], &["--json"]].concat()));
+    assert_eq!(serde_json::from_str::<Value>(&told).unwrap()["manifest"], Value::Null);
 }

@@ -398,3 +398,46 @@ fn more_threads_than_any_machine_has_are_refused() {
     assert!(message.contains("--threads: 100000") && message.contains("1024"), "{message}");
     assert!(contents(folder.path()).is_empty());
 }
+
+#[test]
+fn a_leaf_that_grows_no_vein_is_a_leaf_all_the_same() {
+    let folder = fresh();
+    let bare = ["generate", "beech", "--set", "veins.guides.primary=none", "--maps", "basecolor"];
+    std::fs::write(folder.path().join("far.csv"), "500,30\n").unwrap();
+    for (out, cause) in [
+        ("dartless", ["--set", "veins.spawn_rate=0"]),
+        ("unreachable", ["--set", "veins.attraction_distance_mm=0.01"]),
+        ("outside", ["--sources", "far.csv"]),
+    ] {
+        let arguments = small(&[&bare[..], &cause, &["-o", out, "--format", "json,svg"]].concat());
+        let (code, _, message) = run(folder.path(), &arguments);
+        assert_eq!(code, 0, "{out}: {message}");
+        let is_told = message.contains("no vein reached ");
+        assert_eq!(is_told, out != "dartless", "{out}: {message}");
+    }
+}
+
+#[test]
+fn sources_that_play_no_part_are_told_of() {
+    let folder = fresh();
+    std::fs::write(folder.path().join("one.csv"), "5,30\n").unwrap();
+    let leaf = ["generate", "oak", "--sources", "one.csv", "--maps", "none", "-o"];
+    let trails = ["--set", "veins.algorithm=particles", "--set", "veins.particles.spacing_mm=9"];
+    let (code, _, message) = run(folder.path(), &small(&[&leaf[..], &["o"], &trails].concat()));
+    assert_eq!(code, 0, "{message}");
+    assert!(message.contains("veins.sources_mm") && message.contains("pattern"), "{message}");
+    let (_, _, message) = run(folder.path(), &small(&[&leaf[..], &["p"]].concat()));
+    assert!(!message.contains("no part"), "{message}");
+}
+
+#[test]
+fn two_outputs_are_not_written_into_one_file() {
+    let folder = fresh();
+    let bench = ["bench", "--auxins", "100", "--csv", "b", "--json", "b"];
+    let compare = small(&["compare", "lilac", "-o", "c.png", "--csv", "c.png"]);
+    for arguments in [&bench[..], &compare] {
+        let message = fail(folder.path(), 2, arguments);
+        assert!(message.contains("two outputs cannot be one file"), "{message}");
+    }
+    assert!(contents(folder.path()).is_empty());
+}

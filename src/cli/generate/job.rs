@@ -87,6 +87,7 @@ impl Job {
                 name: self.spec.name.clone(),
                 folder: self.subfolder.clone(),
                 settings_sha256: self.settings_sha256(),
+                run_sha256: None,
                 problem,
                 files: Vec::new(),
             },

@@ -19,7 +19,7 @@ use super::claims::{Claim, Sight};
 use super::field::{Birth, DEAD, Field, Told};
 use super::nodes::Nodes;
 use super::tiles::Tiles;
-use super::views::{Views, callee};
+use super::views::{GONE, Views, callee};
 use crate::growth::{GrowingBlade, Metric};
 use crate::veins::graph::NodeId;
 use crate::veins::{Unreached, VeinSpec};
@@ -122,13 +122,13 @@ impl Sources {
         for (acting, calls) in acting.iter_mut().zip(shares) {
             calls.begin(nodes.len());
             acting.retain(|source| {
-                let Some(slot) = self.field.slot(source) else { return false };
                 let id = source as usize;
                 let node = self.views.nodes[id];
-                if node == NONE {
-                    return true;
+                if node == NONE || node == GONE {
+                    return node == NONE;
                 }
                 if !self.convex && self.views.seen[id] != node {
+                    let Some(slot) = self.field.slot(source) else { return false };
                     if !self.sees(slot, blade, step, nodes) {
                         return true;
                     }
@@ -339,7 +339,9 @@ impl Callers for Sources {
                 let node = (before + found.tip) as NodeId;
                 let bound2 = claim.hear(node, found.distance2, kill2, bounds_others);
                 if keeps_views {
-                    views.nodes[id as usize] = callee(node, found.distance2);
+                    let is_dead = bound2 == DEAD;
+                    views.nodes[id as usize] =
+                        if is_dead { GONE } else { callee(node, found.distance2) };
                     return bound2;
                 }
                 claim.others2 = claim.others2.min(found.others2);
@@ -364,6 +366,9 @@ impl Callers for Sources {
         for source in reached {
             if let Some(slot) = self.field.slot(source) {
                 self.field.kill(slot);
+                if keeps_views {
+                    self.views.nodes[source as usize] = GONE;
+                }
             }
         }
         self.field.take_dead()

@@ -5,6 +5,9 @@ use glam::DVec2;
 use super::NONE;
 use crate::veins::graph::NodeId;
 
+/// In place of the node that a source calls: it has died.
+pub(super) const GONE: NodeId = NONE - 1;
+
 /// By the ids of sources, whom each calls, where that stays so until a new node comes.
 ///
 /// Sources call in the order of their ids and stand in the order of their cells: from here calling is a
@@ -12,7 +15,7 @@ use crate::veins::graph::NodeId;
 #[derive(Debug, Default)]
 pub(super) struct Views {
     pub(super) places: Vec<DVec2>,
-    /// [`NONE`] when it calls nobody.
+    /// [`NONE`] when it calls nobody, [`GONE`] when it has died.
     pub(super) nodes: Vec<NodeId>,
     /// The node that was last seen.
     pub(super) seen: Vec<NodeId>,

@@ -114,11 +114,16 @@ impl Strokes {
         for &(a, b) in venation.graph().joins() {
             (ends[a as usize], ends[b as usize]) = (false, false);
         }
-        let grown = venation.graph().edges().map(|(parent, child)| Capsule {
-            a: at(parent),
-            b: at(child),
-            radius_a: radius(parent).min(radius(child) * BRANCH_FLARE) as f32,
-            radius_b: (radius(child) * if ends[child as usize] { TIP } else { 1.0 }) as f32,
+        let grown = venation.graph().edges().map(|(parent, child)| {
+            let (a, b) = (at(parent), at(child));
+            let flare =
+                (radius(child) * BRANCH_FLARE).min(radius(child) + f64::from(a.distance(b)));
+            Capsule {
+                a,
+                b,
+                radius_a: radius(parent).min(flare) as f32,
+                radius_b: (radius(child) * if ends[child as usize] { TIP } else { 1.0 }) as f32,
+            }
         });
         let joined = venation.graph().joins().iter().map(|&(a, b)| {
             let thinner = radius(a).min(radius(b)) as f32;
@@ -232,8 +237,9 @@ fn necked(venation: &Venation, neck: f64) -> Vec<f64> {
 /// The midrib widens towards the petiole over so many of the radii that they meet with.
 const NECK_RADII: f64 = 30.0;
 
-/// A branch widens towards its parent up to so many times its own radius: a fillet. The parent's
-/// full radius would make a thorn of every fine branch on the midrib.
+/// A branch widens towards its parent up to so many times its own radius, but by no more than it is long:
+/// a fillet. The parent's full radius would make a thorn of every fine branch on the midrib, and a short
+/// piece that widens much looks like a step across the vein.
 pub(super) const BRANCH_FLARE: f64 = 1.3;
 
 impl VeinRows {
@@ -284,6 +290,36 @@ impl VeinRows {
             let labelled = here.max(LEAST_LABEL_PX);
             let lowest = *order == 0 || own < *order;
             *order = if lowest & (*distance2 < labelled * labelled) { own } else { *order };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::veins::VeinGraph;
+
+    #[test]
+    fn a_vein_that_begins_with_a_short_piece_has_no_step_across_it() {
+        const SIZE: usize = 64;
+        let mut graph = VeinGraph::new();
+        let root = graph.add_root(DVec2::ZERO);
+        // Much shorter than the vein is wide.
+        let near = graph.sprout(root, DVec2::new(0.0, 0.02));
+        graph.sprout(near, DVec2::new(0.0, 8.0));
+        let venation = Venation::new(graph, vec![4.0, 1.0, 1.0], vec![1; 3]);
+        let frame = TextureFrame { min: DVec2::splat(-8.0), side_mm: 16.0 };
+        let strokes = Strokes::new(&venation, 0.0, &frame, SIZE, SIZE);
+        let mut rows = VeinRows::default();
+        strokes.fill(0, 0..SIZE, SIZE, false, &mut rows);
+        let groove = |x: usize, y: usize| rows.groove[y * rows.stride + x];
+        let deepest = groove(SIZE / 2, SIZE / 2);
+        assert!(deepest > 0.9, "{deepest}");
+        for (x, y) in (0..SIZE - 1).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
+            let step = (groove(x, y) - groove(x, y + 1)).abs();
+            assert!(step < 0.2, "{step} mm at {x}, {y}");
         }
     }
 }

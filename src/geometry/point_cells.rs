@@ -68,10 +68,10 @@ impl PointCells {
         &self.items[self.starts[at + first] as usize..self.starts[at + last + 1] as usize]
     }
 
-    /// The point nearest to the one at `p` with the number `own`; the lowest number among equals.
-    /// Two rings of cells mostly; a lone point far from the others costs as much as looking at all.
+    /// The point nearest to the one at `p` with the number `own`; among equals that with the least `rank`,
+    /// then the lowest number. Two rings of cells mostly; a lone point far from the others costs as much as looking at all.
     #[must_use]
-    pub fn nearest_other(&self, p: DVec2, own: u32) -> Option<u32> {
+    pub fn nearest_other(&self, p: DVec2, own: u32, rank: impl Fn(u32) -> f64) -> Option<u32> {
         let (column, row) = (self.column(p.x) as isize, self.row(p.y) as isize);
         let (columns, rows) = (self.columns as isize, self.rows as isize);
         let mut best = (f64::INFINITY, u32::MAX);
@@ -81,9 +81,12 @@ impl PointCells {
                 return best.0;
             }
             for &(q, id) in self.strip(row as usize, first as usize, last as usize) {
-                let found = (p.distance_squared(q), id);
-                if id != own && found < best {
-                    best = found;
+                let distance2 = p.distance_squared(q);
+                let comes_before = |other| (rank(id), id) < (rank(other), other);
+                if id != own
+                    && (distance2 < best.0 || (distance2 == best.0 && comes_before(best.1)))
+                {
+                    best = (distance2, id);
                 }
             }
             best.0
@@ -134,11 +137,13 @@ mod tests {
                 let points: Vec<DVec2> = points;
                 cells.rebuild(&points, 0.01);
                 for (i, &p) in points.iter().enumerate() {
+                    let rank = |j: u32| f64::from(j % 5);
                     let nearest = (0..n)
                         .filter(|&j| j != i)
-                        .map(|j| (p.distance_squared(points[j]), j as u32))
+                        .map(|j| (p.distance_squared(points[j]), rank(j as u32), j as u32))
                         .reduce(|a, b| if b < a { b } else { a });
-                    assert_eq!(cells.nearest_other(p, i as u32), nearest.map(|(_, j)| j));
+                    let found = cells.nearest_other(p, i as u32, rank);
+                    assert_eq!(found, nearest.map(|(_, _, j)| j));
                     let mut near = Vec::new();
                     cells.for_each_near(p, 0.2, |j| near.push(j));
                     let within = |j: &u32| points[*j as usize].distance(p) <= 0.2;

@@ -5,9 +5,10 @@
 //! of the picture's border; veins have the other.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use super::jpeg;
 use crate::raster::Grid;
 
 /// Veins in a picture.
@@ -24,7 +25,7 @@ const MOST_SIDE: u32 = 1 << 14;
 /// Pictures may have this many pixels: measuring takes some ten bytes to the pixel.
 const MOST_PIXELS: u64 = 160_000_000;
 /// JPEGs are decoded whole, at 3 bytes to the pixel.
-const MOST_JPEG_BYTES: u64 = 256 << 20;
+const MOST_DECODED_BYTES: u64 = 256 << 20;
 
 /// Whether a file begins as the pictures do that [`read`] reads.
 #[must_use]
@@ -111,12 +112,16 @@ fn is_white(samples: &[u8]) -> bool {
 
 fn read_jpeg(file: &File) -> Result<Grid<bool>, String> {
     let broken = |error: image::ImageError| format!("is not a sound JPEG picture: {error}");
-    let mut reader = image::ImageReader::new(BufReader::new(file));
+    let bytes = jpeg::read(file).map_err(|problem| match problem {
+        jpeg::Problem::Read(error) => error.to_string(),
+        jpeg::Problem::Content(what) => what,
+    })?;
+    let mut reader = image::ImageReader::new(Cursor::new(bytes));
     reader.set_format(image::ImageFormat::Jpeg);
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MOST_SIDE);
     limits.max_image_height = Some(MOST_SIDE);
-    limits.max_alloc = Some(MOST_JPEG_BYTES);
+    limits.max_alloc = Some(MOST_DECODED_BYTES);
     reader.limits(limits);
     let picture = reader.decode().map_err(broken)?;
     check_size(picture.width(), picture.height())?;

@@ -15,6 +15,7 @@ pub mod glb;
 pub mod graph;
 pub mod graphml;
 pub mod image;
+mod jpeg;
 mod leaf_files;
 pub mod manifest;
 mod map_files;

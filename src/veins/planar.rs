@@ -12,7 +12,7 @@ use crate::geometry::polygon::{nearest_on_segment, segments_near};
 pub const CLEARANCE_MM: f64 = 4e-6;
 
 /// Edges that share a node stay apart by this share of the shorter one.
-const LEAST_GAP: f64 = 0.02;
+pub(super) const LEAST_GAP: f64 = 0.02;
 
 /// An edge and the box around it.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +58,7 @@ impl Line {
 }
 
 /// Whether two edges from `hub` keep apart by less than a share of the shorter one.
-fn is_gap_below(hub: DVec2, a: DVec2, b: DVec2, share: f64) -> bool {
+pub(super) fn is_gap_below(hub: DVec2, a: DVec2, b: DVec2, share: f64) -> bool {
     let (to_a, to_b) = (a - hub, b - hub);
     let (along, across) = (to_a.dot(to_b), to_a.perp_dot(to_b));
     // The share is at least the sine of the angle between them, and 1 from a right angle on: only two that

@@ -187,18 +187,29 @@ fn bad_pictures_are_refused() {
     writer.finish().unwrap();
     let mut huge = whole.clone();
     huge[16..20].copy_from_slice(&60_000u32.to_be_bytes());
-    let cases: [(&str, &[u8]); 5] = [
+    let mut jpeg = Vec::new();
+    let noise: Vec<u8> =
+        (0..40_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    let mut encoder = image::codecs::jpeg::JpegEncoder::new(&mut jpeg);
+    encoder.encode(&noise, 200, 200, image::ExtendedColorType::L8).unwrap();
+    std::fs::write(folder.path().join("whole.jpg"), &jpeg).unwrap();
+    succeed(folder.path(), &["inspect", "whole.jpg"]);
+    let cases: [(&str, &[u8]); 6] = [
         ("black.png", &whole),
         ("truncated.png", &whole[..whole.len() - 30]),
         ("signature.png", &whole[..8]),
         ("huge.png", &huge),
         ("short.jpg", &[0xff, 0xd8, 0xff, 0xe0]),
+        ("truncated.jpg", &jpeg[..jpeg.len() / 2]),
     ];
     for (name, bytes) in cases {
         std::fs::write(folder.path().join(name), bytes).unwrap();
         let message = fail(folder.path(), 2, &["inspect", name]);
         assert!(message.contains(name), "{message}");
     }
+    let arguments = ["generate", "beech", "--outline", "truncated.jpg"];
+    let message = fail(folder.path(), 2, &arguments);
+    assert!(message.contains("truncated.jpg") && message.contains("cut short"), "{message}");
     let message = fail(folder.path(), 2, &["inspect", "black.png", "--px-per-mm", "0"]);
     assert!(message.contains("--px-per-mm"), "{message}");
 }

@@ -4,13 +4,14 @@
 //! memory; JPEGs are decoded whole, within a limit. The format is told by content, not by name.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Seek};
+use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder};
 
 use super::OutlineProblem;
+use crate::io::jpeg;
 use crate::margin::silhouette::Picture;
 use crate::raster::Grid;
 
@@ -61,15 +62,13 @@ const MOST_SIDE: u32 = 4096;
 const MOST_PNG_PIXELS: u64 = 1 << 29;
 /// JPEGs may have this many pixels: they are decoded whole, at 3 bytes each.
 const MOST_JPEG_PIXELS: u64 = 120_000_000;
-/// JPEG files may have this many bytes, since they are read whole.
-const MOST_JPEG_BYTES: u64 = 256 << 20;
 
 /// The picture, averaged down when it is very large, and what was done to it.
 pub(super) fn read(path: &Path, format: Format) -> Result<(Picture, Vec<String>), OutlineProblem> {
     let file = File::open(path)?;
     match format {
         Format::Png => read_png(BufReader::new(file)),
-        Format::Jpeg => read_jpeg(file),
+        Format::Jpeg => read_jpeg(&file),
     }
 }
 
@@ -203,18 +202,15 @@ impl Boxes {
     }
 }
 
-fn read_jpeg(file: File) -> Result<(Picture, Vec<String>), OutlineProblem> {
+fn read_jpeg(file: &File) -> Result<(Picture, Vec<String>), OutlineProblem> {
     let broken = |error: image::ImageError| {
         OutlineProblem::Content(format!("is not a sound JPEG picture: {error}"))
     };
-    let bytes = file.metadata()?.len();
-    if bytes > MOST_JPEG_BYTES {
-        return Err(OutlineProblem::Content(format!(
-            "has {bytes} bytes; a JPEG picture may have {MOST_JPEG_BYTES}: reduce it"
-        )));
-    }
-    let mut decoder =
-        image::codecs::jpeg::JpegDecoder::new(BufReader::new(file)).map_err(broken)?;
+    let bytes = jpeg::read(file).map_err(|problem| match problem {
+        jpeg::Problem::Read(error) => OutlineProblem::from(error),
+        jpeg::Problem::Content(what) => OutlineProblem::Content(what),
+    })?;
+    let mut decoder = image::codecs::jpeg::JpegDecoder::new(Cursor::new(bytes)).map_err(broken)?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_JPEG_PIXELS {
         return Err(too_large(width, height, MOST_JPEG_PIXELS));

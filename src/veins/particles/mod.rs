@@ -9,12 +9,16 @@
 //! for realistic modeling of a leaf", 2002, algorithms 1 and 2. Departs from it: the paper ignores
 //! the margin and fails where the petiole is hidden; here q̂ follows the shortest path inside the
 //! blade (`steer`) and particles that cannot see each other neither attract nor merge, unless
-//! `steering` is `plain`. p̂ + q̂ is made a unit vector (a step has one length) and is q̂ where it
-//! vanishes. The width is Murray's law on the energy. Growth plays no part: particles flow in the
+//! `steering` is `plain`. p̂ + q̂ is made a unit vector (a step has one length), but where it is shorter
+//! than one: a particle that another follows would be thrown aside by a whole step, to and fro, and waits
+//! instead. Of neighbours equally near, that nearer to the petiole attracts: a regular pattern stays as
+//! symmetric as the blade. Trails that cross join (`confluence`). The width is Murray's law on the energy. Growth plays no part: particles flow in the
 //! finished blade.
 //!
 //! Lengths are millimetres of the finished leaf.
 
+mod confluence;
+mod contacts;
 pub mod patterns;
 mod steer;
 mod trails;
@@ -181,7 +185,9 @@ fn flow(
             });
         }
     }
-    Ok(Flowed { graph: state.trails.into_graph(&edges), particles, steps })
+    let State { trails, steer, .. } = state;
+    let graph = trails.into_graph(&edges, |a, b| steer.sees(a, b));
+    Ok(Flowed { graph, particles, steps })
 }
 
 /// All particles on their way, in the order in which they started. Of two that merge the first
@@ -229,7 +235,9 @@ impl State {
         }
         for (i, particle) in self.particles.iter_mut().enumerate() {
             let p = before[i];
-            let neighbour = if attracted { self.cells.nearest_other(p, i as u32) } else { None };
+            let off = |j: u32| self.steer.off_root2(before[j as usize]);
+            let neighbour =
+                if attracted { self.cells.nearest_other(p, i as u32, off) } else { None };
             let neighbour = neighbour
                 .map(|j| before[j as usize])
                 .filter(|&other| particle.lost || self.steer.sees(p, other));

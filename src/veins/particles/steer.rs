@@ -105,6 +105,11 @@ impl Steer {
         self.roots.iter().copied().min_by(nearer).unwrap_or(DVec2::ZERO)
     }
 
+    /// The square of how far it is to the nearest root, straight.
+    pub(super) fn off_root2(&self, p: DVec2) -> f64 {
+        self.nearest_root(p).distance_squared(p)
+    }
+
     /// The corner or root to make for from `p`; `None` where no way is known.
     pub(super) fn target(&self, p: DVec2) -> Option<DVec2> {
         match &self.walls {
@@ -114,6 +119,9 @@ impl Steer {
     }
 
     /// Where a particle at `p` is after a step along p̂ + q̂; `neighbour` is the one that attracts it.
+    ///
+    /// A step has one length, whatever that of the sum is, but where the sum is shorter than a unit vector:
+    /// there a particle is followed by its neighbour, and the less is left of its way the more it waits.
     ///
     /// Where the margin or a cut is in the way it goes along q̂ alone, or to the middle of its cell,
     /// from where the way is free. One that can do neither is lost: from then on it goes straight.
@@ -126,8 +134,8 @@ impl Steer {
     ) -> DVec2 {
         let target = if *lost { None } else { self.target(p) };
         let q = unit(target.unwrap_or_else(|| self.nearest_root(p)) - p);
-        let sum = neighbour.map_or(DVec2::ZERO, |other| unit(other - p) + q);
-        let both = p + step * if sum.length_squared() > LEAST_SUM { unit(sum) } else { q };
+        let both =
+            p + step * neighbour.map_or(q, |other| (unit(other - p) + q).clamp_length_max(1.0));
         let Some(walls) = &self.walls else { return both };
         if *lost {
             return p + step * q;
@@ -144,11 +152,6 @@ impl Steer {
         p + step * q
     }
 }
-
-/// A sum of two unit vectors shorter than this (squared) points nowhere. Not more than rounding: with
-/// 0.25 a particle that is followed never turns to the one behind it, and the trails stay a bundle of
-/// straight lines.
-const LEAST_SUM: f64 = 1e-12;
 
 fn unit(v: DVec2) -> DVec2 {
     let length = v.length();

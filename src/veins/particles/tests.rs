@@ -1,8 +1,10 @@
 use super::*;
-use crate::geometry::polygon;
+use crate::geometry::polygon::{self, segments_near};
 use crate::observer::Silent;
 use crate::parameter::Parameters;
 use crate::seed::{Seed, Stage};
+use crate::veins::graph::VeinGraph;
+use crate::veins::planar::CLEARANCE_MM;
 use crate::veins::widths;
 
 /// Five lobes like an ivy's, the basal ones below the petiole, with the area that gives the paper
@@ -112,7 +114,11 @@ fn obvious(spec: &ParticleSpec, margin: &Margin, starts: &[DVec2]) -> Flowed {
         }
         if all.iter().all(Option::is_none) {
             let edges = SegmentIndex::of_polygon(margin.outline());
-            return Flowed { graph: trails.into_graph(&edges), particles: starts.len(), steps };
+            return Flowed {
+                graph: trails.into_graph(&edges, |a, b| steer.sees(a, b)),
+                particles: starts.len(),
+                steps,
+            };
         }
         steps += 1;
         let before: Vec<Option<DVec2>> = all.iter().map(|e| e.map(|e| e.0)).collect();
@@ -122,7 +128,10 @@ fn obvious(spec: &ParticleSpec, margin: &Margin, starts: &[DVec2]) -> Flowed {
             let others =
                 (0..before.len()).filter(|&j| j != i && attracted).filter_map(|j| before[j]);
             let nearest = others
-                .reduce(|a, b| if p.distance_squared(b) < p.distance_squared(a) { b } else { a })
+                .reduce(|a, b| {
+                    let far = |q: DVec2| (p.distance_squared(q), ROOT.distance_squared(q));
+                    if far(b) < far(a) { b } else { a }
+                })
                 .filter(|&other| *lost || steer.sees(*p, other));
             *p = steer.step(*p, nearest, spec.step_mm, lost);
         }
@@ -295,6 +304,48 @@ fn no_vein_crosses_the_margin_or_a_cut_when_steered_inside() {
         plain += crossings(Steering::Plain);
     }
     assert!(plain > 0);
+}
+
+/// How many pairs of edges without a place in common touch or all but touch.
+pub(super) fn crossings(graph: &VeinGraph) -> usize {
+    let at = |id: u32| graph.positions()[id as usize];
+    let left = |&(a, b): &(u32, u32)| at(a).x.min(at(b).x);
+    let mut edges: Vec<(u32, u32)> = graph.edges().collect();
+    edges.sort_by(|one, other| left(one).total_cmp(&left(other)));
+    let crossed = |(i, &(a, b)): (usize, &(u32, u32))| {
+        let right = at(a).x.max(at(b).x);
+        let beside = edges[i + 1..].iter().take_while(|other| left(other) <= right);
+        let meets = |&&(c, d): &&(u32, u32)| {
+            ![c, d].contains(&a)
+                && ![c, d].contains(&b)
+                && segments_near(at(a), at(b), at(c), at(d), CLEARANCE_MM)
+        };
+        beside.filter(meets).count()
+    };
+    edges.iter().enumerate().map(crossed).sum()
+}
+
+#[test]
+fn trails_cross_nowhere_and_hardly_turn_back() {
+    let (mut turns, mut sharp) = (0, 0);
+    for margin in [ivy(), maze(), ellipse()] {
+        for &pattern in Pattern::ALL {
+            for (motion, spacing) in [(Motion::Direct, 8.0), (Motion::Attracted, 4.0)] {
+                let spec = ParticleSpec { algorithm: motion, ..paper(pattern, spacing) };
+                let graph = run(&spec, &margin).graph;
+                assert_eq!(crossings(&graph), 0, "{pattern} {motion}");
+                let at = |id: u32| graph.positions()[id as usize];
+                for (here, before) in graph.edges() {
+                    if let Some(next) = graph.parent(here) {
+                        let (to, on) = (at(here) - at(before), at(next) - at(here));
+                        turns += 1;
+                        sharp += usize::from(to.angle_to(on).abs().to_degrees() > 120.0);
+                    }
+                }
+            }
+        }
+    }
+    assert!(turns > 50_000 && sharp * 500 < turns, "{sharp} of {turns}");
 }
 
 #[test]

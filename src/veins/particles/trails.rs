@@ -5,14 +5,15 @@ use std::collections::HashSet;
 
 use glam::DVec2;
 
+use super::confluence::{Confluence, NONE};
 use crate::geometry::segments::SegmentIndex;
 use crate::veins::graph::VeinGraph;
 
-/// No node.
-const NONE: u32 = u32::MAX;
-
 /// Nodes nearer than about this (in steps) stand in one place.
 const SAME_PLACE: f64 = 1e-6;
+
+/// A trail goes on to the next place after so many steps: a particle that waits for another lays none.
+const LEAST_MOVE: f64 = 0.5;
 
 /// Where the trails of one particle end for now: one, or several that have met and go on together
 /// from the next place laid.
@@ -22,17 +23,17 @@ pub(super) struct Ends {
     last: u32,
 }
 
-/// Places in the order in which they were laid, each with the place laid after it.
+/// Places in the order in which they were laid, the roots first, each with the place laid after it.
 #[derive(Debug)]
 pub(super) struct Trails {
     positions: Vec<DVec2>,
-    /// The next place of the trail: laid later, or the root `r` as `NONE - 1 - r`.
+    /// The next place of the trail: laid later, or a root.
     onward: Vec<u32>,
     /// The next of the ends that have met.
     sibling: Vec<u32>,
     taken: HashSet<[i64; 2]>,
-    per_place: f64,
-    roots: Vec<DVec2>,
+    step: f64,
+    roots: usize,
 }
 
 impl Trails {
@@ -42,11 +43,11 @@ impl Trails {
             onward: Vec::new(),
             sibling: Vec::new(),
             taken: HashSet::new(),
-            per_place: 1.0 / (SAME_PLACE * step),
-            roots: roots.to_vec(),
+            step,
+            roots: roots.len(),
         };
         for &root in roots {
-            trails.take(root);
+            trails.add(root);
         }
         trails
     }
@@ -55,25 +56,31 @@ impl Trails {
         self.positions.len()
     }
 
-    /// Whether a place was free; it no longer is.
-    fn take(&mut self, p: DVec2) -> bool {
-        let place = (p * self.per_place).round();
-        self.taken.insert([place.x as i64, place.y as i64])
+    fn add(&mut self, p: DVec2) -> u32 {
+        let place = (p / (SAME_PLACE * self.step)).round();
+        self.taken.insert([place.x as i64, place.y as i64]);
+        self.positions.push(p);
+        self.onward.push(NONE);
+        self.sibling.push(NONE);
+        self.positions.len() as u32 - 1
     }
 
     /// Begins a trail; `None` where another place is.
     pub(super) fn begin(&mut self, p: DVec2) -> Option<Ends> {
-        self.take(p).then(|| {
-            let id = self.positions.len() as u32;
-            self.positions.push(p);
-            self.onward.push(NONE);
-            self.sibling.push(NONE);
-            Ends { first: id, last: id }
-        })
+        let place = (p / (SAME_PLACE * self.step)).round();
+        if self.taken.contains(&[place.x as i64, place.y as i64]) {
+            return None;
+        }
+        let id = self.add(p);
+        Some(Ends { first: id, last: id })
     }
 
-    /// Goes on to `p`; where another place is, the trails wait for the next.
+    /// Goes on to `p`; where another place is, and within half a step, the trails wait for the next.
     pub(super) fn lay(&mut self, ends: &mut Ends, p: DVec2) {
+        let least = LEAST_MOVE * self.step;
+        if self.each(*ends).any(|end| self.positions[end as usize].distance(p) < least) {
+            return;
+        }
         if let Some(place) = self.begin(p) {
             self.go_on(*ends, place.first);
             *ends = place;
@@ -88,7 +95,12 @@ impl Trails {
 
     /// Ends trails at a root.
     pub(super) fn arrive(&mut self, ends: Ends, root: usize) {
-        self.go_on(ends, NONE - 1 - root as u32);
+        self.go_on(ends, root as u32);
+    }
+
+    fn each(&self, ends: Ends) -> impl Iterator<Item = u32> + '_ {
+        let next = move |&at: &u32| (at != ends.last).then(|| self.sibling[at as usize]);
+        std::iter::successors(Some(ends.first), next)
     }
 
     fn go_on(&mut self, ends: Ends, to: u32) {
@@ -102,22 +114,18 @@ impl Trails {
         }
     }
 
-    /// The trails as veins that grow from the roots: what was laid last comes first. Places outside
-    /// the blade are left out, and the trail goes straight from the last inside to the next.
-    pub(super) fn into_graph(self, blade: &SegmentIndex) -> VeinGraph {
-        let mut graph = VeinGraph::new();
-        let roots: Vec<u32> = self.roots.iter().map(|&root| graph.add_root(root)).collect();
-        let mut ids = vec![0; self.positions.len()];
-        for at in (0..self.positions.len()).rev() {
-            let onward = self.onward[at];
-            let parent = match ids.get(onward as usize) {
-                Some(&id) => id,
-                None => roots[(NONE - 1 - onward) as usize],
-            };
-            let p = self.positions[at];
-            ids[at] = if blade.contains(p) { graph.sprout(parent, p) } else { parent };
-        }
-        graph
+    /// The trails as veins that grow from the roots. Places outside the blade are left out, and so are those
+    /// at which a trail turned back, where it `is_free` to go past; trails that cross join.
+    pub(super) fn into_graph(
+        self,
+        blade: &SegmentIndex,
+        is_free: impl Fn(DVec2, DVec2) -> bool,
+    ) -> VeinGraph {
+        let mut confluence = Confluence::new(blade, self.positions, self.onward, self.roots);
+        confluence.clip();
+        confluence.trim(&is_free);
+        confluence.join(self.step, &is_free);
+        confluence.into_graph()
     }
 }
 
@@ -138,7 +146,7 @@ mod tests {
         trails.lay(&mut both, DVec2::new(1.0, 3.0));
         trails.lay(&mut both, DVec2::new(0.0, 1.0));
         trails.arrive(both, 0);
-        let graph = trails.into_graph(&SegmentIndex::of_polygon(&square));
+        let graph = trails.into_graph(&SegmentIndex::of_polygon(&square), |_, _| true);
         assert_eq!(graph.check(), None);
         let heights: Vec<f64> = graph.positions().iter().map(|p| p.y).collect();
         assert_eq!(heights, [0.0, 1.0, 2.0, 3.0, 3.0]);

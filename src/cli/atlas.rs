@@ -90,6 +90,11 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if overwrite == Overwrite::Refuse && !files.is_empty() {
         return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
     }
+    // Nothing is grown that could not fit: a leaf takes no less than this.
+    let least = (LEAST_SIDE_PX + padding) * (LEAST_WIDTH_PX + padding);
+    if seeds.len().saturating_mul(least) > (size + padding).pow(2) {
+        return Err(no_room(seeds.len(), size, padding));
+    }
     let mut packed = None;
     if !args.run.dry_run {
         let files = pool(args.run.threads)?.install(|| {
@@ -190,13 +195,20 @@ fn lay_out(ready: &[Ready], size: usize, padding: usize) -> Result<LayOut, Failu
     let best = (0..SCALES_TRIED).find_map(|i| try_at(most * SCALE_STEP.powi(i)));
     // A leaf's own picture has 16 texels at least.
     let smallest = ready.iter().map(|leaf| leaf.side_mm).fold(f64::INFINITY, f64::min);
-    best.filter(|found| found.per_mm * smallest >= 17.0).ok_or_else(|| {
-        Failure::Input(format!(
-            "{} leaves do not fit on {size} pixels with {padding} between them; give a larger --size, \
-             a smaller --padding or fewer --seeds",
-            ready.len()
-        ))
-    })
+    best.filter(|found| found.per_mm * smallest >= 17.0)
+        .ok_or_else(|| no_room(ready.len(), size, padding))
+}
+
+/// What is covered of a leaf's own picture of 16 texels or more, at the least: nearly its side, and more than
+/// a line.
+const LEAST_SIDE_PX: usize = 8;
+const LEAST_WIDTH_PX: usize = 2;
+
+fn no_room(leaves: usize, size: usize, padding: usize) -> Failure {
+    Failure::Input(format!(
+        "{leaves} leaves do not fit on {size} pixels with {padding} between them; give a larger --size, a \
+         smaller --padding or fewer --seeds"
+    ))
 }
 
 /// Paints every leaf, lays it on the sheet, and gives the files.

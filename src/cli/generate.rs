@@ -1,6 +1,7 @@
 //! `venation generate`: leaves into folders.
 
 mod job;
+mod notes;
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,6 @@ use venation::io::write::{Overwrite, write_files};
 use venation::io::{self, LeafFiles};
 use venation::pipeline;
 use venation::seed::Seed;
-use venation::veins::{Algorithm, Unreached};
 
 use super::leaf_args::LeafArgs;
 use super::output_args::OutputArgs;
@@ -91,27 +91,29 @@ struct Made {
     note: Option<String>,
 }
 
-/// When so large a share of the sources stays without a vein, a part of the blade is bare.
-const BARE: f64 = 0.05;
-
-/// What is to be said of a leaf of which so many of the auxin sources were not reached.
-fn note(sources: usize, unreached: &Unreached) -> Option<String> {
-    let count = unreached.total();
-    if count as f64 <= BARE * sources as f64 {
-        return None;
-    }
-    let text = unreached.to_string();
-    let (_, reasons) = text.split_once(": ").unwrap_or_default();
-    let advice = match unreached.unfinished {
-        0 => "",
-        _ => {
-            "; with more growth.total_steps or longer steps (veins.longest_step = 0) veins come farther"
+impl Made {
+    /// A leaf of which nothing is known yet but what it is called.
+    fn of(job: &Job, status: &'static str) -> Self {
+        Self {
+            seed: job.seed,
+            name: job.spec.name.clone(),
+            folder: shown(&job.folder),
+            status,
+            problem: None,
+            files: Vec::new(),
+            nodes: 0,
+            unreached_sources: 0,
+            note: None,
         }
-    };
-    Some(format!("no vein reached {count} of {sources} auxin sources ({reasons}){advice}"))
+    }
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
+    if args.run.json && args.progress == ProgressWord::Openjd {
+        let problem =
+            "--json: stdout would hold the lines of --progress openjd, too; give one of them";
+        return Err(Failure::Input(problem.into()));
+    }
     let mut document = args.leaf.document(context)?;
     args.output.apply(&mut document)?;
     if let Some(formats) = &args.format {
@@ -132,11 +134,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
         }
     }
+    notes::tell_sizes(context, &todo);
     if args.run.dry_run {
         return plan(args, context, &batch, &todo);
     }
-    tell_shortfalls(&document, context, &todo);
-    tell_unused(context, &todo);
+    notes::tell_shortfalls(&document, context, &todo);
+    notes::tell_unused(context, &todo);
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
     let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
@@ -197,39 +200,6 @@ impl Batch {
     }
 }
 
-/// Says which leaves are perturbed by less than `vary` asks for.
-fn tell_shortfalls(document: &Document, context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
-    let Some(wanted) = document.vary else { return };
-    let varied = todo.iter().filter_map(|(job, _)| job.varied);
-    let short: Vec<f64> = varied.filter(|percent| *percent < wanted).collect();
-    let why = "with more, margins would cross themselves";
-    match &short[..] {
-        [] => {}
-        [percent] if todo.len() == 1 => {
-            context.say(&format!("vary: the margin differs by {percent} %, not {wanted}: {why}"));
-        }
-        _ => context.say(&format!(
-            "vary: {} of {} margins differ by less than {wanted} %: {why}",
-            short.len(),
-            todo.len()
-        )),
-    }
-}
-
-/// Says which settings play no part.
-fn tell_unused(context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
-    let is_unused = |job: &Job| {
-        let veins = &job.spec.veins;
-        veins.algorithm == Algorithm::Particles && !veins.sources_mm.is_empty()
-    };
-    if todo.iter().any(|(job, _)| is_unused(job)) {
-        context.say(
-            "veins.sources_mm: auxin sources play no part where veins are trails of particles, \
-             which start from veins.particles.pattern",
-        );
-    }
-}
-
 /// Says what a run would write and what it would leave alone.
 fn plan(
     args: &Args,
@@ -239,17 +209,7 @@ fn plan(
 ) -> Result<(), Failure> {
     let planned: Vec<Made> = todo
         .iter()
-        .map(|(job, _)| Made {
-            seed: job.seed,
-            name: job.spec.name.clone(),
-            folder: shown(&job.folder),
-            status: "planned",
-            problem: None,
-            files: job.names(),
-            nodes: 0,
-            unreached_sources: 0,
-            note: None,
-        })
+        .map(|(job, _)| Made { files: job.names(), ..Made::of(job, "planned") })
         .collect();
     tell(args, context, batch.manifest.as_deref(), &planned, batch.jobs.len() - todo.len())
 }
@@ -286,15 +246,11 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     });
     write_files(&job.folder, &files, overwrite).map_err(|error| write_failure(&error))?;
     Ok(Made {
-        seed: job.seed,
-        name: job.spec.name.clone(),
-        folder: shown(&job.folder),
-        status: "made",
-        problem: None,
         files: files.into_iter().map(|(name, _)| name).collect(),
         nodes: leaf.grown.venation.graph().len(),
         unreached_sources: leaf.grown.venation.unreached().total(),
-        note: note(leaf.grown.venation.sources(), &leaf.grown.venation.unreached()),
+        note: notes::of_sources(&leaf.grown.venation),
+        ..Made::of(job, "made")
     })
 }
 
@@ -331,17 +287,7 @@ fn report(
                     super::complain(&format!("seed {}: {problem}", job.seed));
                 }
                 problems.push((job.seed, problem.clone()));
-                list.push(Made {
-                    seed: job.seed,
-                    name: job.spec.name.clone(),
-                    folder: shown(&job.folder),
-                    status: "failed",
-                    problem: Some(problem),
-                    files: Vec::new(),
-                    nodes: 0,
-                    unreached_sources: 0,
-                    note: None,
-                });
+                list.push(Made { problem: Some(problem), ..Made::of(job, "failed") });
                 failures.push(failure);
             }
         }

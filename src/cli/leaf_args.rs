@@ -266,7 +266,7 @@ fn insert_shape(name: &str, document: &mut Document) -> Result<(), Failure> {
     Ok(())
 }
 
-/// One leaf of a document, its name checked for use in file names.
+/// One leaf of a document; its name will do for files, and it is known what to write of it.
 pub(crate) fn resolve(document: &Document, seed: u64) -> Result<LeafSpec, Failure> {
     Ok(resolve_varied(document, seed)?.0)
 }
@@ -279,10 +279,22 @@ pub(crate) fn resolve_varied(
     let (spec, varied) = document.resolve_varied(Seed(seed))?;
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
     if spec.name.is_empty() || spec.name.len() > 100 || !spec.name.chars().all(plain) {
-        return Err(Failure::Input(format!(
+        let problem = format!(
             "name = `{}`: files are called after it, so it takes 1 to 100 letters, digits, - and _",
             spec.name
-        )));
+        );
+        return Err(at_fault(document, "name", &problem));
+    }
+    if let Err(error) = spec.output.resolve() {
+        return Err(at_fault(document, error.key(), &error.to_string()));
     }
     Ok((spec, varied))
+}
+
+/// What is wrong with the value of a key, and where it was given.
+fn at_fault(document: &Document, key: &str, problem: &str) -> Failure {
+    Failure::Input(match document.origin(key) {
+        Some(origin) => format!("{origin}: {problem}"),
+        None => problem.to_owned(),
+    })
 }

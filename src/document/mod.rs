@@ -128,6 +128,12 @@ impl Document {
         self.entries.contains_key(key)
     }
 
+    /// Where a key was given: `beech.toml:12`, `--set`, …
+    #[must_use]
+    pub fn origin(&self, key: &str) -> Option<&str> {
+        self.entries.get(key).map(|entry| &*entry.origin)
+    }
+
     /// Lays another document over this one: what it gives replaces what this gave.
     pub fn overlay(&mut self, over: Self) {
         for list in over.lists {
@@ -246,6 +252,20 @@ mod tests {
             "leaf.toml:3: unknown key `veins.kill_distanse_mm`; did you mean \
              `veins.kill_distance_mm`?"
         );
+    }
+
+    #[test]
+    fn a_misspelt_group_and_a_key_misspelt_in_the_wrong_group_are_found_too() {
+        let message = problem("[margin]\nrigth = { waist_x = 0.2 }\n");
+        assert_eq!(
+            message,
+            "leaf.toml:2: unknown key `margin.rigth`; did you mean `margin.right`?"
+        );
+        assert!(problem("[colur]\ntype = \"plain\"\n").ends_with("did you mean `colour`?"));
+        assert!(problem("[growth]\nsesaon = 1\n").ends_with("did you mean `state.season`?"));
+        // What stands first is told first, whatever it is called.
+        let message = problem("[veins]\nzzz_zzz = 1\nkill_distanse_mm = 2\n[growth]\nscal = 1\n");
+        assert!(message.starts_with("leaf.toml:2: unknown key `veins.zzz_zzz`"), "{message}");
     }
 
     #[test]

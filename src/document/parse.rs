@@ -6,7 +6,7 @@ use super::records::{self, find};
 use super::value::kind_in_words;
 use super::{Document, DocumentError, Entry, Value, parameters};
 use crate::parameter::{Kind, Parameter, RECORD};
-use crate::spelling::{LIKE_A_KEY, nearest};
+use crate::spelling::{LIKE_A_KEY, likeness, nearest};
 
 /// Keys of a file that are not knobs of the leaf.
 const SEED: &str = "seed";
@@ -33,14 +33,17 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn table(&mut self, prefix: &str, table: &DeTable<'_>) -> Result<(), DocumentError> {
-        for (name, value) in table.iter() {
+        // As they stand in the file: what is wrong first is told first.
+        let mut entries: Vec<_> = table.iter().collect();
+        entries.sort_by_key(|(name, _)| name.span().start);
+        for (name, value) in entries {
             let origin = format!("{}:{}", self.origin, (self.line_of)(name.span().start));
             let key = format!("{prefix}{}", name.get_ref());
             let fail = |problem: String| DocumentError { origin: origin.clone(), problem };
             match value.get_ref() {
                 DeValue::Table(inner) => {
                     if !records::is_group(&key) {
-                        return Err(fail(unknown(&key)));
+                        return Err(fail(unknown_group(&key)));
                     }
                     self.table(&format!("{key}."), inner)?;
                 }
@@ -143,12 +146,32 @@ pub(super) fn assignment(text: &str, origin: &str) -> Result<(String, Value), Do
 }
 
 fn unknown(key: &str) -> String {
+    fn last_of(key: &str) -> &str {
+        key.rsplit('.').next().unwrap_or(key)
+    }
     let keys = || parameters().iter().map(|p| p.key.as_str());
-    // A last part that stands elsewhere is more likely the right word in the wrong group.
-    let last = key.rsplit('.').next().unwrap_or(key);
-    let same_ending = || keys().find(|k| k.rsplit('.').next() == Some(last));
+    let last = last_of(key);
     let plain = records::template(key);
-    match nearest(plain.as_deref().unwrap_or(key), LIKE_A_KEY, keys()).or_else(same_ending) {
+    let by_key = nearest(plain.as_deref().unwrap_or(key), LIKE_A_KEY, keys());
+    // A last part that stands elsewhere, spelt like that or nearly, is the right word in the wrong group.
+    let by_last = nearest(last, LIKE_A_KEY, keys().map(last_of))
+        .and_then(|near| keys().find(|key| last_of(key) == near));
+    let alike = |near: Option<&str>| near.map_or(-1.0, |near| likeness(last, last_of(near)));
+    unknown_but(key, if alike(by_last) > alike(by_key) { by_last } else { by_key })
+}
+
+/// The same for the name of a table.
+fn unknown_group(key: &str) -> String {
+    let plain = records::template(key);
+    let groups = parameters().iter().flat_map(|p| {
+        let ends = p.key.match_indices('.').map(|(end, _)| end);
+        ends.map(|end| &p.key[..end])
+    });
+    unknown_but(key, nearest(plain.as_deref().unwrap_or(key), LIKE_A_KEY, groups))
+}
+
+fn unknown_but(key: &str, near: Option<&str>) -> String {
+    match near {
         Some(near) => {
             let number = key.split('.').find(|part| part.parse::<usize>().is_ok()).unwrap_or("1");
             let near = near.replace(&format!(".{RECORD}."), &format!(".{number}."));

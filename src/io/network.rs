@@ -75,6 +75,13 @@ pub fn read(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, Netw
         }
         return Ok(ReadNetwork { network, unit, path, pixel: Some(pixel), notes });
     }
+    if head.is_empty() {
+        return Err(problem("is empty".into()));
+    }
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    if matches!(&*ending, "png" | "jpg" | "jpeg") {
+        return Err(problem("is not a PNG or JPEG picture, whatever its name says".into()));
+    }
     let text = text(&path).map_err(problem)?;
     let document = VeinDocument::from_json(&text).map_err(problem)?;
     let read = document.graph().map_err(problem)?;

@@ -164,6 +164,18 @@ pub enum OutputError {
     },
 }
 
+impl OutputError {
+    /// The key that is to be changed.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Map(_) => "output.maps",
+            Self::Format { .. } => "output.formats",
+            Self::Bits { .. } => "output.bits",
+        }
+    }
+}
+
 /// [`OutputSpec`] with every word understood.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {

@@ -46,12 +46,10 @@ impl Unreached {
     pub fn total(&self) -> usize {
         self.outside + self.too_young + self.out_of_reach + self.hidden + self.unfinished
     }
-}
 
-impl std::fmt::Display for Unreached {
-    /// The count, and the reasons in words.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.total())?;
+    /// The reasons in words, each with its count; empty where there are none.
+    #[must_use]
+    pub fn reasons(&self) -> String {
         let reasons = [
             (self.outside, "outside the blade"),
             (self.too_young, "where the margin has not come yet"),
@@ -59,12 +57,18 @@ impl std::fmt::Display for Unreached {
             (self.hidden, "hidden behind the margin or a cut"),
             (self.unfinished, "not reached when growth ended"),
         ];
-        let mut separator = ": ";
-        for (count, reason) in reasons.into_iter().filter(|&(count, _)| count > 0) {
-            write!(f, "{separator}{count} {reason}")?;
-            separator = ", ";
+        let given = reasons.into_iter().filter(|&(count, _)| count > 0);
+        given.map(|(count, reason)| format!("{count} {reason}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl std::fmt::Display for Unreached {
+    /// The count, and the reasons in words.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.total() {
+            0 => write!(f, "0"),
+            total => write!(f, "{total}: {}", self.reasons()),
         }
-        Ok(())
     }
 }
 

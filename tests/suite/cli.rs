@@ -177,11 +177,20 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
     std::fs::write(folder.path().join("file"), "").unwrap();
     std::fs::write(folder.path().join("bad.toml"), "[veins]\nkill_distanse_mm = 1\n").unwrap();
     std::fs::write(folder.path().join("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    std::fs::write(folder.path().join("bits.toml"), "name = 'x'\n[output]\nbits = 12\n").unwrap();
+    std::fs::write(folder.path().join("maps.toml"), "[output]\nmaps = 'basecolour'\n").unwrap();
+    std::fs::write(folder.path().join("name.toml"), "\nname = '../up'\n").unwrap();
     let cases: &[(&[&str], &str)] = &[
         (&["generate", "beach"], "did you mean `beech`"),
         (&["generate", "nowhere.toml"], "nowhere.toml"),
         (&["generate", "bad.toml"], "bad.toml:2: unknown key `veins.kill_distanse_mm`"),
         (&["generate", "binary.toml"], "not UTF-8"),
+        (&["generate", "bits.toml"], "bits.toml:3: output.bits = 12"),
+        (&["generate", "maps.toml"], "maps.toml:2: output.maps: `basecolour`"),
+        (&["atlas", "maps.toml"], "maps.toml:2: output.maps: `basecolour`"),
+        (&["generate", "name.toml"], "name.toml:2: name = `../up`"),
+        (&["generate", "beech", "--json", "--progress", "openjd"], "--progress openjd"),
+        (&["atlas", "beech", "--seeds", "1-900", "--size", "512", "-n"], "900 leaves do not fit"),
         (&["generate", "."], "."),
         (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),
@@ -210,7 +219,17 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
         assert!(message.contains(expected), "{arguments:?}: {message}");
     }
     let left: Vec<_> = contents(folder.path()).into_keys().collect();
-    assert_eq!(left.len(), 3, "{left:?}");
+    assert_eq!(left.len(), 6, "{left:?}");
+}
+
+#[test]
+fn leaves_of_metres_are_told_to_take_long() {
+    let folder = fresh();
+    let message =
+        |length| run(folder.path(), &["generate", "beech", "--length-mm", length, "-n"]).2;
+    assert_eq!(message("100"), "");
+    let text = message("2000");
+    assert!(text.contains("2000 mm") && text.contains("veins.scale"), "{text}");
 }
 
 #[test]

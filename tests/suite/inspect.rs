@@ -207,6 +207,13 @@ fn bad_pictures_are_refused() {
         let message = fail(folder.path(), 2, &["inspect", name]);
         assert!(message.contains(name), "{message}");
     }
+    for (name, text, problem) in
+        [("empty.png", "", "is empty"), ("text.png", "veins", "is not a PNG or JPEG picture")]
+    {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let message = fail(folder.path(), 2, &["inspect", name]);
+        assert!(message.contains(name) && message.contains(problem), "{message}");
+    }
     let arguments = ["generate", "beech", "--outline", "truncated.jpg"];
     let message = fail(folder.path(), 2, &arguments);
     assert!(message.contains("truncated.jpg") && message.contains("cut short"), "{message}");

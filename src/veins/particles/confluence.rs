@@ -264,8 +264,8 @@ impl<'a> Confluence<'a> {
     pub(super) fn into_graph(self) -> VeinGraph {
         let mut graph = VeinGraph::new();
         let mut ids = vec![NONE; self.positions.len()];
-        for root in 0..self.roots {
-            ids[root] = graph.add_root(self.positions[root]);
+        for (id, &root) in ids.iter_mut().zip(&self.positions[..self.roots]) {
+            *id = graph.add_root(root);
         }
         let mut way = Vec::new();
         for start in self.places().rev().filter(|&i| self.is_start[i as usize]) {

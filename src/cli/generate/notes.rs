@@ -71,12 +71,11 @@ const MANY: f64 = 2e6;
 /// Says which leaves will take long: metres given as millimetres go unnoticed otherwise.
 pub(super) fn tell_sizes(context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
     let size = |job: &Job| {
-        let veins = &job.spec.veins;
-        let kill_distance = veins.kill_distance_mm * veins.scale;
-        let many = 0.5 * (job.spec.margin.length_mm / kill_distance).powi(2);
-        (veins.algorithm != Algorithm::Particles && many > MANY).then_some((many, job))
+        let kill_distance = job.spec.veins.kill_distance_mm * job.spec.veins.scale;
+        0.5 * (job.spec.margin.length_mm / kill_distance).powi(2)
     };
-    let slow = todo.iter().filter_map(|(job, _)| size(job));
+    let grown = todo.iter().filter(|(job, _)| job.spec.veins.algorithm != Algorithm::Particles);
+    let slow = grown.map(|(job, _)| (size(job), *job)).filter(|(many, _)| *many > MANY);
     if let Some((many, job)) = slow.max_by(|a, b| a.0.total_cmp(&b.0)) {
         context.say(&format!(
             "seed {}: veins {:.2} mm apart in a blade of {:.0} mm take a core some {:.0} minutes; a larger \

@@ -128,6 +128,8 @@ fn number(value: Option<f64>) -> String {
     match value {
         None => "-".into(),
         Some(value) if value.abs() >= 100.0 => format!("{value:.1}"),
+        // Nothing less than nothing: what rounds to 0 has no sign.
+        Some(value) if value.abs() < 0.0005 => "0.000".into(),
         Some(value) => format!("{value:.3}"),
     }
 }

@@ -44,6 +44,8 @@ const CELLS_A_SOURCE: f64 = 4.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<S> {
     pub(super) id: u32,
+    /// Its bound says so, too; but that lies in memory that whoever asks does not need: closed venation
+    /// took a twentieth longer.
     pub(super) is_alive: bool,
     /// Whether it is in the list of those in reach, or about to be.
     pub(super) is_acting: bool,

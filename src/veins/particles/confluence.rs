@@ -42,6 +42,14 @@ pub(super) struct Confluence<'a> {
     roots: usize,
 }
 
+/// Where two trails join.
+enum Joint {
+    /// At a place of one of them.
+    Place(u32),
+    /// Between places.
+    Fresh(DVec2),
+}
+
 impl<'a> Confluence<'a> {
     /// Of places in the order in which they were laid, the roots first.
     pub(super) fn new(
@@ -185,27 +193,19 @@ impl<'a> Confluence<'a> {
         laid.first_contact([from, to], least_gap, &self.positions, is_there, counts)
     }
 
-    /// Joins the trail from a place to the edge that it has come upon. The place to go on from, where the
-    /// trail has come upon itself.
+    /// Joins the trail from a place and the edge that it has come upon. The place to go on from, where the
+    /// trail keeps its course: it has come upon itself, or upon a lesser one.
     fn meet(&mut self, from: u32, contact: Contact, near: f64, laid: &mut Laid) -> Option<u32> {
         let [a, b] = contact.edge;
         let to = self.onward[from as usize];
-        let is_near = |place: u32| self.at(place).distance(contact.place) < near;
-        // A start stays the end of its vein: a trail over it joins beside it.
-        let beside = |start: u32| Some((self.at(start) + self.at(b)) / 2.0);
-        let (at, fresh) = if b != to && is_near(b) {
-            (b, None)
-        } else if is_near(a) {
-            if self.is_start[a as usize] { (NONE, beside(a)) } else { (a, None) }
-        } else if is_near(from) {
-            if self.is_start[from as usize] { (NONE, beside(from)) } else { (from, None) }
-        } else {
-            (NONE, Some(contact.place))
+        let goes_on_at = |at: Option<u32>| {
+            let is_greater = self.flow[from as usize] > self.flow[a as usize];
+            self.leads(b, from) || (at != Some(b) && is_greater && !self.leads(to, a))
         };
-        let goes_on = self.leads(b, from)
-            || (at != b && self.flow[from as usize] > self.flow[a as usize] && !self.leads(to, a));
-        let at = match fresh {
-            Some(place) => {
+        let (at, goes_on) = match self.joint(from, contact, near) {
+            Joint::Place(at) => (at, goes_on_at(Some(at))),
+            Joint::Fresh(place) => {
+                let goes_on = goes_on_at(None);
                 let at = self.positions.len() as u32;
                 self.positions.push(place);
                 self.onward.push(b);
@@ -213,30 +213,45 @@ impl<'a> Confluence<'a> {
                 self.flow.push(0);
                 self.lead(a, at);
                 self.lay(a, laid);
-                at
+                if !goes_on {
+                    self.lay(at, laid);
+                }
+                (at, goes_on)
             }
-            None => at,
         };
         // What goes on is led on first: nothing may lead to itself, not even for a moment.
-        if at != from && goes_on {
-            self.lead(at, to);
-        } else if at == from && !goes_on {
-            self.lead(from, b);
-        }
         if at == from {
+            if !goes_on {
+                self.lead(from, b);
+                self.lay(from, laid);
+            }
             self.lead(a, from);
             self.lay(a, laid);
         } else {
+            if goes_on {
+                self.lead(at, to);
+            }
             self.lead(from, at);
             self.lay(from, laid);
         }
-        if goes_on {
-            return Some(at);
+        goes_on.then_some(at)
+    }
+
+    /// Where the trail from a place and the edge that it has come upon are to join.
+    fn joint(&self, from: u32, contact: Contact, near: f64) -> Joint {
+        let [a, b] = contact.edge;
+        let is_near = |place: u32| self.at(place).distance(contact.place) < near;
+        if b != self.onward[from as usize] && is_near(b) {
+            return Joint::Place(b);
         }
-        if at == from || fresh.is_some() {
-            self.lay(at, laid);
+        match [a, from].into_iter().find(|&place| is_near(place)) {
+            // A start stays the end of its vein: a trail over it joins beside it.
+            Some(start) if self.is_start[start as usize] => {
+                Joint::Fresh((self.at(start) + self.at(b)) / 2.0)
+            }
+            Some(place) => Joint::Place(place),
+            None => Joint::Fresh(contact.place),
         }
-        None
     }
 
     /// Lets a trail go on to another place, and all that flows in it.

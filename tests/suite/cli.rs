@@ -190,7 +190,7 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
         (&["atlas", "maps.toml"], "maps.toml:2: output.maps: `basecolour`"),
         (&["generate", "name.toml"], "name.toml:2: name = `../up`"),
         (&["generate", "beech", "--json", "--progress", "openjd"], "--progress openjd"),
-        (&["atlas", "beech", "--seeds", "1-900", "--size", "512", "-n"], "900 leaves do not fit"),
+        (&["atlas", "beech", "--seeds", "1-9000", "--size", "512", "-n"], "9000 leaves do not fit"),
         (&["generate", "."], "."),
         (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),

@@ -130,7 +130,7 @@ fn bad_graphs_are_refused_with_the_file_and_the_reason() {
         format!("{NODE},{}", node.replace("null", parent))
     };
     let cases = [
-        (String::new(), "is not a vein graph"),
+        (String::new(), "is empty"),
         ("[".repeat(100_000), "is not a vein graph"),
         ("{}".into(), "missing field"),
         (graph("", ""), "has no veins"),

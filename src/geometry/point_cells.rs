@@ -68,8 +68,9 @@ impl PointCells {
         &self.items[self.starts[at + first] as usize..self.starts[at + last + 1] as usize]
     }
 
-    /// The point nearest to the one at `p` with the number `own`; among equals that with the least `rank`,
-    /// then the lowest number. Two rings of cells mostly; a lone point far from the others costs as much as looking at all.
+    /// The point nearest to the one at `p` with the number `own`; among equals that with the least
+    /// `rank`, then the lowest number. Two rings of cells mostly; a lone point far from the others costs
+    /// as much as looking at all.
     #[must_use]
     pub fn nearest_other(&self, p: DVec2, own: u32, rank: impl Fn(u32) -> f64) -> Option<u32> {
         let (column, row) = (self.column(p.x) as isize, self.row(p.y) as isize);

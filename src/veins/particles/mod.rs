@@ -12,8 +12,8 @@
 //! `steering` is `plain`. p̂ + q̂ is made a unit vector (a step has one length), but where it is shorter
 //! than one: a particle that another follows would be thrown aside by a whole step, to and fro, and waits
 //! instead. Of neighbours equally near, that nearer to the petiole attracts: a regular pattern stays as
-//! symmetric as the blade. Trails that cross join (`confluence`). The width is Murray's law on the energy. Growth plays no part: particles flow in the
-//! finished blade.
+//! symmetric as the blade. Trails that cross join (`confluence`). The width is Murray's law on the energy.
+//! Growth plays no part: particles flow in the finished blade.
 //!
 //! Lengths are millimetres of the finished leaf.
 

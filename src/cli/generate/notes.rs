@@ -70,10 +70,8 @@ const MANY: f64 = 2e6;
 
 /// Says which leaves will take long: metres given as millimetres go unnoticed otherwise.
 pub(super) fn tell_sizes(context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
-    let size = |job: &Job| {
-        let kill_distance = job.spec.veins.kill_distance_mm * job.spec.veins.scale;
-        0.5 * (job.spec.margin.length_mm / kill_distance).powi(2)
-    };
+    let apart_mm = |job: &Job| job.spec.veins.scaled().kill_distance_mm;
+    let size = |job: &Job| 0.5 * (job.spec.margin.length_mm / apart_mm(job)).powi(2);
     let grown = todo.iter().filter(|(job, _)| job.spec.veins.algorithm != Algorithm::Particles);
     let slow = grown.map(|(job, _)| (size(job), *job)).filter(|(many, _)| *many > MANY);
     if let Some((many, job)) = slow.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -81,7 +79,7 @@ pub(super) fn tell_sizes(context: &Context<'_>, todo: &[(&Job, Overwrite)]) {
             "seed {}: veins {:.2} mm apart in a blade of {:.0} mm take a core some {:.0} minutes; a larger \
              veins.scale makes the net coarser",
             job.seed,
-            job.spec.veins.kill_distance_mm * job.spec.veins.scale,
+            apart_mm(job),
             job.spec.margin.length_mm,
             (many / MANY).ceil(),
         ));

@@ -132,7 +132,7 @@ impl<'a> Confluence<'a> {
             let mut from = Some(place).filter(|&place| self.flow[place as usize] > 0);
             for _ in 0..MOST_CONTACTS {
                 let Some(place) = from else { break };
-                let contact = self.first_contact(&laid, place);
+                let contact = self.first_contact(&laid, place, self.onward[place as usize]);
                 from = contact.and_then(|contact| self.meet(place, contact, near, &mut laid));
                 if contact.is_none() {
                     self.lay(place, &mut laid);
@@ -146,21 +146,18 @@ impl<'a> Confluence<'a> {
 
     /// Lets a trail that would have to turn back where it joins another join it farther on.
     fn ease(&mut self, from: u32, laid: &mut Laid, is_free: impl Fn(DVec2, DVec2) -> bool) {
-        let was = self.onward[from as usize];
-        if self.flow[from as usize] == 0 || !self.turns_back(from) {
+        let mut to = self.onward[from as usize];
+        if self.flow[from as usize] == 0 || !self.turns_back(from, to) {
             return;
         }
-        let mut to = was;
         for _ in 0..FARTHER {
             to = self.onward[to as usize];
             if to == NONE {
                 break;
             }
-            self.onward[from as usize] = to;
-            let fits = !self.turns_back(from)
+            let fits = !self.turns_back(from, to)
                 && is_free(self.at(from), self.at(to))
-                && self.first_contact(laid, from).is_none();
-            self.onward[from as usize] = was;
+                && self.first_contact(laid, from, to).is_none();
             if fits {
                 self.lead(from, to);
                 self.lay(from, laid);
@@ -169,12 +166,10 @@ impl<'a> Confluence<'a> {
         }
     }
 
-    /// Whether a trail turns by more than a right angle at the place after this one.
-    fn turns_back(&self, from: u32) -> bool {
-        let here = self.onward[from as usize];
-        let next = self.onward[here as usize];
-        let turn =
-            |next: u32| (self.at(here) - self.at(from)).dot(self.at(next) - self.at(here)) < 0.0;
+    /// Whether a trail that goes on from a place to another turns by more than a right angle there.
+    fn turns_back(&self, from: u32, to: u32) -> bool {
+        let next = self.onward[to as usize];
+        let turn = |next: u32| (self.at(to) - self.at(from)).dot(self.at(next) - self.at(to)) < 0.0;
         next != NONE && turn(next)
     }
 
@@ -182,9 +177,8 @@ impl<'a> Confluence<'a> {
         laid.push([from, self.onward[from as usize]], &self.positions);
     }
 
-    /// Where the edge from a place first comes upon a laid one.
-    fn first_contact(&self, laid: &Laid, from: u32) -> Option<Contact> {
-        let to = self.onward[from as usize];
+    /// Where an edge from place to place first comes upon a laid one.
+    fn first_contact(&self, laid: &Laid, from: u32, to: u32) -> Option<Contact> {
         // At a root all may meet at any angle.
         let least_gap = if (to as usize) < self.roots { 0.0 } else { LEAST_GAP };
         // The way of a trail that was clipped is outside, and no place may be there.

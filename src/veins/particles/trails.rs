@@ -47,6 +47,7 @@ impl Trails {
             roots: roots.len(),
         };
         for &root in roots {
+            trails.take(root);
             trails.add(root);
         }
         trails
@@ -56,9 +57,13 @@ impl Trails {
         self.positions.len()
     }
 
-    fn add(&mut self, p: DVec2) -> u32 {
+    /// Whether a place was free; it no longer is.
+    fn take(&mut self, p: DVec2) -> bool {
         let place = (p / (SAME_PLACE * self.step)).round();
-        self.taken.insert([place.x as i64, place.y as i64]);
+        self.taken.insert([place.x as i64, place.y as i64])
+    }
+
+    fn add(&mut self, p: DVec2) -> u32 {
         self.positions.push(p);
         self.onward.push(NONE);
         self.sibling.push(NONE);
@@ -67,18 +72,16 @@ impl Trails {
 
     /// Begins a trail; `None` where another place is.
     pub(super) fn begin(&mut self, p: DVec2) -> Option<Ends> {
-        let place = (p / (SAME_PLACE * self.step)).round();
-        if self.taken.contains(&[place.x as i64, place.y as i64]) {
-            return None;
-        }
-        let id = self.add(p);
-        Some(Ends { first: id, last: id })
+        self.take(p).then(|| {
+            let id = self.add(p);
+            Ends { first: id, last: id }
+        })
     }
 
     /// Goes on to `p`; where another place is, and within half a step, the trails wait for the next.
     pub(super) fn lay(&mut self, ends: &mut Ends, p: DVec2) {
         let least = LEAST_MOVE * self.step;
-        if self.each(*ends).any(|end| self.positions[end as usize].distance(p) < least) {
+        if each(&self.sibling, *ends).any(|end| self.positions[end as usize].distance(p) < least) {
             return;
         }
         if let Some(place) = self.begin(p) {
@@ -98,20 +101,8 @@ impl Trails {
         self.go_on(ends, root as u32);
     }
 
-    fn each(&self, ends: Ends) -> impl Iterator<Item = u32> + '_ {
-        let next = move |&at: &u32| (at != ends.last).then(|| self.sibling[at as usize]);
-        std::iter::successors(Some(ends.first), next)
-    }
-
     fn go_on(&mut self, ends: Ends, to: u32) {
-        let mut at = ends.first;
-        loop {
-            self.onward[at as usize] = to;
-            if at == ends.last {
-                return;
-            }
-            at = self.sibling[at as usize];
-        }
+        each(&self.sibling, ends).for_each(|end| self.onward[end as usize] = to);
     }
 
     /// The trails as veins that grow from the roots. Places outside the blade are left out, and so are those
@@ -127,6 +118,12 @@ impl Trails {
         confluence.join(self.step, &is_free);
         confluence.into_graph()
     }
+}
+
+/// The ends that have met, by the next of each.
+fn each(sibling: &[u32], ends: Ends) -> impl Iterator<Item = u32> + '_ {
+    let next = move |&at: &u32| (at != ends.last).then(|| sibling[at as usize]);
+    std::iter::successors(Some(ends.first), next)
 }
 
 #[cfg(test)]

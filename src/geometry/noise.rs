@@ -6,6 +6,8 @@
 //!
 //! Only sums, products and comparisons: the same bits on every machine.
 
+use super::whole::floor;
+
 /// A hash of a lattice point: every bit of the result depends on every bit of the input.
 #[must_use]
 #[inline]
@@ -22,15 +24,6 @@ pub fn lattice(x: i32, y: i32, seed: u32) -> u32 {
 #[inline]
 pub fn unit(hash: u32) -> f32 {
     (hash >> 8) as f32 * (1.0 / (1 << 24) as f32)
-}
-
-/// The greatest integer not above `x`, for |x| < 2³¹. The library's `floor` is a call on machines
-/// without SSE 4.1 and would cost more than the rest of the noise.
-#[must_use]
-#[inline(always)]
-pub fn floor(x: f32) -> i32 {
-    let cut = x as i32;
-    cut - i32::from(x < cut as f32)
 }
 
 /// Smooth noise of about one feature per unit, mean 0, within −1 … 1.

@@ -3,6 +3,8 @@
 //! The conversions are palette's, restated for plain floats without a branch per colour space: a
 //! texture asks for millions. The tests hold the two against each other.
 
+use crate::geometry::whole;
+
 /// A colour: hue in degrees, saturation and value 0–1, in sRGB's own (not linear) numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tint {
@@ -47,7 +49,7 @@ impl Tint {
     pub fn srgb(self) -> [f32; 3] {
         let sixths = self.hue * (1.0 / 60.0);
         // The hue is within a few turns: bring it into 0–6 without a call to a library.
-        let sixths = sixths - 6.0 * crate::geometry::noise::floor(sixths * (1.0 / 6.0)) as f32;
+        let sixths = sixths - 6.0 * whole::floor(sixths * (1.0 / 6.0)) as f32;
         let (s, v) = (self.saturation.clamp(0.0, 1.0), self.value.clamp(0.0, 1.0));
         let ramp = |shift: f32| {
             let k = sixths + shift;
@@ -58,18 +60,18 @@ impl Tint {
     }
 }
 
-/// A share 0–1 in 16 bits, rounded.
+/// A share 0–1 in 16 bits, rounded; what is less or more is 0 or 1.
 #[must_use]
 #[inline(always)]
 pub fn word(share: f32) -> u16 {
-    (share * 65535.0 + 0.5) as u16
+    whole::floor(share.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
 }
 
-/// A share 0–1 as a byte, rounded.
+/// A share 0–1 as a byte, rounded; what is less or more is 0 or 1.
 #[must_use]
 #[inline(always)]
 pub fn byte(share: f32) -> u8 {
-    (share * 255.0 + 0.5) as u8
+    whole::floor(share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
 #[cfg(test)]

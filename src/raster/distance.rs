@@ -155,7 +155,9 @@ fn lower_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>) {
         while let Some(last) = envelope.last() {
             // The last column where the older parabola is not above the newer one.
             let above = column * column - last.column * last.column + height - last.height;
-            from = above.div_euclid(2 * (column - last.column)) + 1;
+            // Most are neighbours, and a division takes as long as the rest.
+            let apart = column - last.column;
+            from = if apart == 1 { above >> 1 } else { above.div_euclid(2 * apart) } + 1;
             if from > last.from {
                 break;
             }

@@ -11,6 +11,7 @@ use super::petiole::StalkAt;
 use super::scene::Scene;
 use super::side::SideMaps;
 use super::strip::{LANES, Strip, Structure};
+use crate::geometry::whole;
 use crate::raster::Grid;
 use crate::raster::color::{byte, word};
 
@@ -66,7 +67,7 @@ impl pulp::WithSimd for Band<'_> {
             return spans;
         };
         let orders = scene.maps.has(MapKind::VeinOrder);
-        scene.strokes.fill(number, rows.clone(), size, orders, &mut scratch.veins);
+        scene.strokes.fill(number, rows.clone(), &columns, orders, &mut scratch.veins);
         let at = |x: usize, y: usize| {
             let [left, bottom] = scene.frame.min.as_vec2().to_array();
             [left + x as f32 / scene.per_mm, bottom + (size - y) as f32 / scene.per_mm]
@@ -120,52 +121,69 @@ impl SideRows<'_> {
         strip: &Strip,
         painted: &Painted,
     ) {
-        #[inline(always)]
-        fn lay<T>(plane: &mut [T], side: usize, texels: Range<usize>, value: impl Fn(usize) -> T) {
-            // A plane that is not kept has no texels.
-            let Some(texels) = plane.get_mut(texels) else { return };
-            let n = texels.len();
-            // Written as loops: what iterators do out of line would be done without vectors.
-            if side == 0 {
-                for (i, texel) in texels.iter_mut().enumerate().take(LANES) {
-                    *texel = value(i);
+        // A plane that is not kept has no texels. What is laid is worked out first, in a loop and not in
+        // a closure: those are compiled out of line, without vectors.
+        macro_rules! lay {
+            ($plane:expr, $empty:expr, |$i:ident| $value:expr) => {
+                if let Some(row) = $plane.get_mut(texels.clone()) {
+                    let mut values = [$empty; LANES];
+                    for $i in 0..LANES {
+                        values[$i] = $value;
+                    }
+                    laid(row, side, &values);
                 }
-            } else {
-                for i in 0..n.min(LANES) {
-                    texels[n - 1 - i] = value(i);
-                }
-            }
+            };
         }
         let per_height = 65535.0 / (2.0 * scene.relief.bound());
         let per_thickness = 65535.0 / scene.relief.thickest();
-        let (shades, all) = (&painted.shades[side], || texels.clone());
-        lay(self.colour, side, all(), |i| {
-            let [r, g, b, ..] = shades[i].map(byte);
-            [r, g, b, byte(painted.alpha[i])]
+        let (shades, alpha) = (&painted.shades[side], &painted.alpha);
+        let (heights, bumps) = (&painted.heights[side], &painted.bumps[side]);
+        let (roughness, transmission) = (&painted.roughness[side], &painted.transmission[side]);
+        lay!(self.colour, [0; 4], |i| {
+            let [r, g, b, ..] = shades[i];
+            [byte(r), byte(g), byte(b), byte(alpha[i])]
         });
-        let heights = &painted.heights[side];
-        lay(self.height, side, all(), |i| (heights[i] * per_height + 32768.0) as u16);
-        lay(self.bump, side, all(), |i| painted.bumps[side][i] as u8);
-        lay(self.roughness, side, all(), |i| byte(painted.roughness[side][i]));
-        lay(self.transmission, side, all(), |i| byte(painted.transmission[side][i]));
-        lay(self.translucency, side, all(), |i| {
-            let [_, _, _, r, g, b, ..] = shades[i].map(byte);
-            [r, g, b]
+        lay!(self.height, 0, |i| sixteen(heights[i] * per_height + 32768.0));
+        lay!(self.bump, 0, |i| whole::floor(bumps[i].clamp(0.0, 255.0)) as u8);
+        lay!(self.roughness, 0, |i| byte(roughness[i]));
+        lay!(self.transmission, 0, |i| byte(transmission[i]));
+        lay!(self.translucency, [0; 3], |i| {
+            let [_, _, _, r, g, b, ..] = shades[i];
+            [byte(r), byte(g), byte(b)]
         });
-        lay(self.thickness, side, all(), |i| (painted.thickness[i] * per_thickness + 0.5) as u16);
-        lay(self.vein_mask, side, all(), |i| byte(strip.vein_mask(i)));
-        lay(self.vein_order, side, all(), |i| strip.vein_order(i));
-        lay(self.deep_colour, side, all(), |i| {
-            let [r, g, b, ..] = shades[i].map(word);
-            [r, g, b, word(painted.alpha[i])]
+        lay!(self.thickness, 0, |i| sixteen(painted.thickness[i] * per_thickness + 0.5));
+        lay!(self.vein_mask, 0, |i| byte(strip.vein_mask(i)));
+        lay!(self.vein_order, 0, |i| strip.vein_order(i));
+        lay!(self.deep_colour, [0; 4], |i| {
+            let [r, g, b, ..] = shades[i];
+            [word(r), word(g), word(b), word(alpha[i])]
         });
-        lay(self.deep_roughness, side, all(), |i| word(painted.roughness[side][i]));
-        lay(self.deep_transmission, side, all(), |i| word(painted.transmission[side][i]));
-        lay(self.deep_translucency, side, all(), |i| {
-            let [_, _, _, r, g, b, ..] = shades[i].map(word);
-            [r, g, b]
+        lay!(self.deep_roughness, 0, |i| word(roughness[i]));
+        lay!(self.deep_transmission, 0, |i| word(transmission[i]));
+        lay!(self.deep_translucency, [0; 3], |i| {
+            let [_, _, _, r, g, b, ..] = shades[i];
+            [word(r), word(g), word(b)]
         });
-        lay(self.deep_vein_mask, side, all(), |i| word(strip.vein_mask(i)));
+        lay!(self.deep_vein_mask, 0, |i| word(strip.vein_mask(i)));
+    }
+}
+
+/// The whole part of a number in 16 bits.
+#[inline(always)]
+fn sixteen(x: f32) -> u16 {
+    whole::floor(x.clamp(0.0, 65535.0)) as u16
+}
+
+/// Copies a strip to its texels; behind, from right to left.
+#[inline(always)]
+fn laid<T: Copy>(texels: &mut [T], side: usize, values: &[T; LANES]) {
+    let n = texels.len().min(LANES);
+    if side == 0 {
+        texels[..n].copy_from_slice(&values[..n]);
+    } else {
+        for i in 0..n {
+            texels[n - 1 - i] = values[i];
+        }
     }
 }
 

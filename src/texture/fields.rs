@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::banded::Banded;
 use super::pen::{Axis, BLOCK, Pen, block};
 use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
@@ -34,10 +35,7 @@ const TIP: f64 = 0.35;
 /// The veins of a leaf as strokes on its texture (pixels).
 #[derive(Debug)]
 pub(super) struct Strokes {
-    /// Those that pass through each band of rows, `strokes[starts[i]..starts[i + 1]]`; one that passes
-    /// through several stands in each.
-    strokes: Vec<Stroke>,
-    starts: Vec<usize>,
+    strokes: Banded<Stroke>,
     mm: f32,
 }
 
@@ -65,8 +63,10 @@ pub(super) struct VeinAt {
 /// What the veins are over some rows, row by row; see [`VeinAt`].
 #[derive(Debug, Default)]
 pub(super) struct VeinRows {
-    /// From row to row: the width, and some texels that a stroke at the end may run over into.
-    pub stride: usize,
+    /// From row to row: the columns, and some texels that a stroke at the end may run over into.
+    stride: usize,
+    /// The column of the first texel in each row.
+    first: usize,
     pub cover: Vec<f32>,
     pub radius: Vec<f32>,
     pub dome: Vec<f32>,
@@ -79,8 +79,8 @@ pub(super) struct VeinRows {
 
 impl VeinRows {
     /// Empty rows.
-    fn clear(&mut self, width: usize, rows: usize, orders: bool) {
-        self.stride = width + BLOCK;
+    fn clear(&mut self, columns: &Range<usize>, rows: usize, orders: bool) {
+        (self.stride, self.first) = (columns.len() + BLOCK, columns.start);
         let texels = self.stride * rows;
         let planes =
             [&mut self.cover, &mut self.radius, &mut self.dome, &mut self.groove, &mut self.shows];
@@ -90,6 +90,12 @@ impl VeinRows {
         }
         self.order.clear();
         self.order.resize(if orders { texels } else { 0 }, 0);
+    }
+
+    /// Where a texel is found, by its row among these and its column.
+    #[inline(always)]
+    pub(super) fn index(&self, row: usize, column: usize) -> usize {
+        row * self.stride + column - self.first
     }
 }
 
@@ -141,29 +147,36 @@ impl Strokes {
                 Stroke { capsule, order, reach }
             })
             .collect();
-        let (starts, strokes) = sorted(&strokes, size, band);
-        Self { strokes, starts, mm: (1.0 / pixels_per_mm) as f32 }
+        let rows = |stroke: &Stroke| {
+            let [_, rows] = stroke.capsule.pixels(stroke.reach, size, 0..size);
+            rows
+        };
+        let strokes = Banded::new(&strokes, size, band, rows);
+        Self { strokes, mm: (1.0 / pixels_per_mm) as f32 }
     }
 
-    /// The veins over a band of rows of the texture; their orders where they are asked for.
+    /// The veins over some columns of a band of rows of the texture; their orders where they are asked
+    /// for.
     #[inline(always)]
     pub(super) fn fill(
         &self,
         band: usize,
         rows: Range<usize>,
-        width: usize,
+        seen: &Range<usize>,
         orders: bool,
         out: &mut VeinRows,
     ) {
-        out.clear(width, rows.len(), orders);
-        for stroke in &self.strokes[self.starts[band]..self.starts[band + 1]] {
-            let [columns, lines] = stroke.capsule.pixels(stroke.reach, width, rows.clone());
+        out.clear(seen, rows.len(), orders);
+        for stroke in self.strokes.band(band) {
+            let [columns, lines] = stroke.capsule.pixels(stroke.reach, seen.end, rows.clone());
+            let start = columns.start.max(seen.start);
+            let columns = start..columns.end.max(start);
             let pen = Pen::new(&stroke.capsule, stroke.reach);
             for y in lines {
-                let row = (y - rows.start) * out.stride;
                 let on_row = pen.on_row(y);
                 for x in pen.columns(y, columns.clone()).step_by(BLOCK) {
-                    let (axis, texels) = (on_row.axis(x), row + x..row + x + BLOCK);
+                    let first = out.index(y - rows.start, x);
+                    let (axis, texels) = (on_row.axis(x), first..first + BLOCK);
                     out.draw(&axis, self.mm, texels.clone());
                     if orders {
                         out.label(&axis, stroke.order, texels);
@@ -172,32 +185,6 @@ impl Strokes {
             }
         }
     }
-}
-
-/// The strokes that pass through each band, in order, and where each band's begin.
-fn sorted(strokes: &[Stroke], size: usize, band: usize) -> (Vec<usize>, Vec<Stroke>) {
-    let bands = |stroke: &Stroke| {
-        let [_, lines] = stroke.capsule.pixels(stroke.reach, size, 0..size);
-        if lines.is_empty() { 0..0 } else { lines.start / band..lines.end.div_ceil(band) }
-    };
-    let mut starts = vec![0; size.div_ceil(band) + 1];
-    for stroke in strokes {
-        for i in bands(stroke) {
-            starts[i + 1] += 1;
-        }
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let none = Stroke { capsule: Capsule::default(), order: 0, reach: 0.0 };
-    let (mut next, mut at) = (starts.clone(), vec![none; starts[starts.len() - 1]]);
-    for stroke in strokes {
-        for i in bands(stroke) {
-            at[next[i]] = *stroke;
-            next[i] += 1;
-        }
-    }
-    (starts, at)
 }
 
 /// The nodes of the midrib, from the petiole: at each fork the widest child. Of several roots the
@@ -313,8 +300,8 @@ mod tests {
         let frame = TextureFrame { min: DVec2::splat(-8.0), side_mm: 16.0 };
         let strokes = Strokes::new(&venation, 0.0, &frame, SIZE, SIZE);
         let mut rows = VeinRows::default();
-        strokes.fill(0, 0..SIZE, SIZE, false, &mut rows);
-        let groove = |x: usize, y: usize| rows.groove[y * rows.stride + x];
+        strokes.fill(0, 0..SIZE, &(0..SIZE), false, &mut rows);
+        let groove = |x: usize, y: usize| rows.groove[rows.index(y, x)];
         let deepest = groove(SIZE / 2, SIZE / 2);
         assert!(deepest > 0.9, "{deepest}");
         for (x, y) in (0..SIZE - 1).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {

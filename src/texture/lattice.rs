@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use super::pigment::Albedo;
 use super::spectrum::{Spectrum, Tabulated, encoded};
 use super::strip::{LANES, Lane};
+use crate::geometry::whole;
 
 /// Nodes on each axis.
 const NODES: [usize; 5] = [16, 8, 9, 8, 5];
@@ -51,6 +52,11 @@ const STRIDES: [usize; 5] = {
     }
     strides
 };
+
+/// The bits of a sorted coordinate that hold a stride: what they take from it, a two-thousandth, is far less
+/// than a step of 8 bits between any two nodes.
+const STEP: u32 = (1 << 12) - 1;
+const _: () = assert!(STRIDES[0] <= STEP as usize);
 
 /// A channel of the light sent back and let through. At no wavelength is that more than falls on the
 /// leaf, but a pale saturated yellow lies outside sRGB and would have more red than white has: both
@@ -100,10 +106,8 @@ impl Lattice {
     #[inline(always)]
     pub(super) fn read(&self, amounts: &[Lane; 5], colours: &mut [Node; LANES]) {
         const PER_STRUCTURE: f32 = (NODES[4] - 1) as f32 / (STRUCTURE[1] - STRUCTURE[0]) as f32;
-        let mut first = [0_i32; LANES];
-        // How far past its node a place lies on each axis, from far to near. Positive floats sort as
-        // their bits do; the last three bits carry the axis.
-        let mut keys = [[0_u32; LANES]; 5];
+        // The corners of a place's simplex, one after the other, and how much each counts.
+        let (mut corners, mut weights) = ([[0_u32; LANES]; 6], [[0.0_f32; LANES]; 6]);
         for i in 0..LANES {
             let place: [f32; 5] = std::array::from_fn(|k| {
                 let amount = amounts[k][i];
@@ -114,27 +118,33 @@ impl Lattice {
                 };
                 place.clamp(0.0, (NODES[k] - 1) as f32 - 1e-3)
             });
-            let node = place.map(|v| v as i32);
-            first[i] = (0..5).map(|k| node[k] * STRIDES[k] as i32).sum();
-            let mut key: [u32; 5] =
-                std::array::from_fn(|k| ((place[k] - node[k] as f32).to_bits() & !7) | k as u32);
+            let node = place.map(whole::floor);
+            // How far past its node a place lies on each axis, from far to near. Positive floats sort as
+            // their bits do; the last bits carry the step to the next node on that axis.
+            let mut key: [u32; 5] = std::array::from_fn(|k| {
+                ((place[k] - node[k] as f32).to_bits() & !STEP) | STRIDES[k] as u32
+            });
             for (a, b) in [(0, 3), (1, 4), (0, 2), (1, 3), (0, 1), (2, 4), (1, 2), (3, 4), (2, 3)] {
                 (key[a], key[b]) = (key[a].max(key[b]), key[a].min(key[b]));
             }
-            for (keys, key) in keys.iter_mut().zip(key) {
-                keys[i] = key;
+            let first: i32 = (0..5).map(|k| node[k] * STRIDES[k] as i32).sum();
+            let (mut corner, mut before) = (first as u32, 1.0);
+            for k in 0..5 {
+                let share = f32::from_bits(key[k] & !STEP);
+                (corners[k][i], weights[k][i]) = (corner, before - share);
+                (corner, before) = (corner + (key[k] & STEP), share);
             }
+            (corners[5][i], weights[5][i]) = (corner, before);
         }
-        for i in 0..LANES {
-            let (mut index, mut before, mut sum) = (first[i] as usize, 1.0, [0.0; 8]);
-            for key in &keys {
-                let share = f32::from_bits(key[i] & !7);
-                add(&mut sum, &self.nodes[index], before - share);
-                index += AXIS_STRIDES[(key[i] & 7) as usize];
-                before = share;
+        for (i, colour) in colours.iter_mut().enumerate() {
+            let mut sum = [0.0; 8];
+            for k in 0..6 {
+                let (node, weight) = (&self.nodes[corners[k][i] as usize], weights[k][i]);
+                for c in 0..8 {
+                    sum[c] += node[c] * weight;
+                }
             }
-            add(&mut sum, &self.nodes[index], before);
-            colours[i] = sum;
+            *colour = sum;
         }
     }
 }
@@ -191,17 +201,6 @@ impl Lattice {
             }
         }
         leaf
-    }
-}
-
-/// [`STRIDES`], and as many more as make every three bits name one.
-const AXIS_STRIDES: [usize; 8] =
-    [STRIDES[0], STRIDES[1], STRIDES[2], STRIDES[3], STRIDES[4], 0, 0, 0];
-
-#[inline(always)]
-fn add(sum: &mut Node, node: &Node, weight: f32) {
-    for (sum, value) in sum.iter_mut().zip(node) {
-        *sum += value * weight;
     }
 }
 

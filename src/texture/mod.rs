@@ -10,6 +10,7 @@
 
 pub mod atlas;
 mod band;
+mod banded;
 mod brush;
 mod crumbs;
 pub mod damage;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::side::{FLAT, SideMaps};
 use super::spans::Spans;
+use crate::geometry::whole;
 use crate::raster::Grid;
 
 /// The unit normal of a surface whose height rises by `dx` per unit to the right and by `dy` per
@@ -21,7 +22,7 @@ pub fn from_slopes(dx: f32, dy: f32) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
-    normal.map(|component| (component * 127.5 + 128.0) as u8)
+    normal.map(|component| whole::floor(component * 127.5 + 128.0) as u8)
 }
 
 /// Fills the normals of a side from its heights, where the leaf is; flat elsewhere. One step of a

@@ -43,7 +43,7 @@ fn fill_plane<T: Copy + Send>(
     (base_colour, height, spans): (&Grid<[u8; 4]>, &Grid<u16>, &Spans),
     steps: [usize; 2],
     per_texel: f32,
-    of: fn(f32) -> T,
+    of: impl Fn(f32) -> T + Copy + Sync,
 ) {
     let size = height.width();
     let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [T])| {
@@ -51,13 +51,8 @@ fn fill_plane<T: Copy + Send>(
         if columns.is_empty() {
             return;
         }
-        let work = Row { y, columns: columns.clone(), height, steps, per_texel, sum };
+        let work = Row { y, columns, height, steps, per_texel, sum, colours, row, of };
         pulp::Arch::new().dispatch(work);
-        for x in columns {
-            if covered(&colours[x]) {
-                row[x] = of(1.0 - sum[x] / DIRECTIONS.len() as f32);
-            }
-        }
     };
     occlusion
         .values_mut()
@@ -66,26 +61,26 @@ fn fill_plane<T: Copy + Send>(
         .for_each_init(|| vec![0.0; size], fill_row);
 }
 
-fn covered(texel: &[u8; 4]) -> bool {
-    texel[3] > 0
-}
-
 /// Columns of a row of which is found how much light the relief hides, in all directions.
-struct Row<'a> {
+struct Row<'a, T, F> {
     y: usize,
     columns: Range<usize>,
     height: &'a Grid<u16>,
     steps: [usize; 2],
     per_texel: f32,
+    /// For what is hidden, not kept.
     sum: &'a mut [f32],
+    colours: &'a [[u8; 4]],
+    row: &'a mut [T],
+    of: F,
 }
 
-impl pulp::WithSimd for Row<'_> {
+impl<T: Copy, F: Fn(f32) -> T> pulp::WithSimd for Row<'_, T, F> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { y, columns, height, steps, per_texel, sum } = self;
+        let Self { y, columns, height, steps, per_texel, sum, colours, row, of } = self;
         let (first, end, size) = (columns.start, columns.end, height.width());
         sum[first..end].fill(0.0);
         for (dx, dy) in DIRECTIONS {
@@ -128,6 +123,11 @@ impl pulp::WithSimd for Row<'_> {
                 }
                 _ => {}
             }
+        }
+        let (sum, colours) = (&sum[first..end], &colours[first..end]);
+        for ((texel, colour), hidden) in row[first..end].iter_mut().zip(colours).zip(sum) {
+            let open = of(1.0 - hidden / DIRECTIONS.len() as f32);
+            *texel = if colour[3] > 0 { open } else { *texel };
         }
     }
 }

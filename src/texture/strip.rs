@@ -158,7 +158,7 @@ impl Strip {
 
     #[inline(always)]
     pub(super) fn read_veins(&mut self, rows: &VeinRows, line: usize) {
-        let from = line * rows.stride + self.start;
+        let from = rows.index(line, self.start);
         let (len, vein) = (self.len, &mut self.vein);
         for (lane, plane) in [
             (&mut vein.cover, &rows.cover),

@@ -8,7 +8,7 @@
 //! than the texels fades.
 
 use super::strip::{LANES, Lane};
-use crate::geometry::noise;
+use crate::geometry::{noise, whole};
 
 /// Sizes of the meshes (mm): of third-order veins where none have grown, of the fourth order, and
 /// of the fifth.
@@ -39,6 +39,12 @@ const AROUND: usize = 9;
 /// Texels that are compared with the same points at a time.
 const BLOCK: usize = 8;
 
+/// A point seen from the corner of a cell, the number of its areole, and nothing: as much as is moved at once.
+type Seen = [f32; 4];
+
+/// Those around a cell, and as many more as make every four bits name one.
+type Around = [Seen; 16];
+
 /// One net over some rows: the points of all its cells there.
 #[derive(Debug)]
 pub(super) struct Net {
@@ -58,7 +64,7 @@ impl Net {
 
     /// Works out the points around all places between two corners (mm).
     pub(super) fn prepare(&mut self, low: [f32; 2], high: [f32; 2]) {
-        let cell = |v: f32| noise::floor(v / self.size);
+        let cell = |v: f32| whole::floor(v / self.size);
         self.first = low.map(|v| cell(v) - 1);
         let last = high.map(|v| cell(v) + 1);
         self.across = (last[0] - self.first[0] + 1) as usize;
@@ -76,13 +82,13 @@ impl Net {
 
     /// The points around a cell, seen from its corner.
     #[inline(always)]
-    fn around(&self, x: i32, y: i32) -> [[f32; 3]; AROUND] {
+    fn around(&self, x: i32, y: i32) -> Around {
         let (column, row) = ((x - self.first[0]) as usize, (y - self.first[1]) as usize);
-        let mut points = [[0.0; 3]; AROUND];
-        for (dy, three) in points.chunks_exact_mut(3).enumerate() {
+        let mut points = [[0.0; 4]; 16];
+        for (dy, three) in points[..AROUND].chunks_exact_mut(3).enumerate() {
             let from = &self.points[(row + dy - 1) * self.across + column - 1..][..3];
             for (dx, (point, [px, py, tone])) in three.iter_mut().zip(from).enumerate() {
-                *point = [px + dx as f32 - 1.0, py + dy as f32 - 1.0, *tone];
+                *point = [px + dx as f32 - 1.0, py + dy as f32 - 1.0, *tone, 0.0];
             }
         }
         points
@@ -96,11 +102,11 @@ impl Net {
         let (mut cells, mut within) = ([[0_i32; LANES]; 2], [[0.0_f32; LANES + BLOCK]; 2]);
         for i in 0..LANES {
             let (x, y) = (xs[i] * per_cell, ys[i] * per_cell);
-            let (column, row) = (noise::floor(x), noise::floor(y));
+            let (column, row) = (whole::floor(x), whole::floor(y));
             (cells[0][i], cells[1][i]) = (column, row);
             (within[0][i], within[1][i]) = (x - column as f32, y - row as f32);
         }
-        let (mut first, mut second) = ([[0.0_f32; LANES + BLOCK]; 2], [[0.0; LANES + BLOCK]; 2]);
+        let (mut first, mut second) = ([[0.0; 4]; LANES + BLOCK], [[0.0; 4]; LANES + BLOCK]);
         let mut start = 0;
         while start < LANES {
             let cell = (cells[0][start], cells[1][start]);
@@ -117,12 +123,8 @@ impl Net {
                 };
                 let (nearest, next) = two_nearest(&points, at(0), at(1));
                 for l in 0..BLOCK {
-                    let (p, q) = (points[nearest[l] as usize & 15], points[next[l] as usize & 15]);
-                    (first[0][block + l], first[1][block + l]) = (p[0], p[1]);
-                    (second[0][block + l], second[1][block + l]) = (q[0], q[1]);
-                    if block + l < LANES {
-                        tone[block + l] = p[2];
-                    }
+                    first[block + l] = points[nearest[l] as usize & 15];
+                    second[block + l] = points[next[l] as usize & 15];
                 }
             }
             start = end;
@@ -132,11 +134,12 @@ impl Net {
                 let (dx, dy) = (x - within[0][i], y - within[1][i]);
                 dx * dx + dy * dy
             };
-            let (p, q) = ((first[0][i], first[1][i]), (second[0][i], second[1][i]));
-            let (dx, dy) = (p.0 - q.0, p.1 - q.1);
+            let ([px, py, areole, _], [qx, qy, ..]) = (first[i], second[i]);
+            let (dx, dy) = (px - qx, py - qy);
             let apart = (dx * dx + dy * dy).sqrt().max(1e-3);
-            let behind = squared(q.0, q.1) - squared(p.0, p.1);
+            let behind = squared(qx, qy) - squared(px, py);
             border[i] = (behind / (2.0 * apart)).max(0.0) * self.size;
+            tone[i] = areole;
         }
     }
 }
@@ -147,12 +150,12 @@ impl Net {
 /// bits do, and the last bits carry the index.
 #[inline(always)]
 fn two_nearest(
-    points: &[[f32; 3]; AROUND],
+    points: &Around,
     x: &[f32; BLOCK],
     y: &[f32; BLOCK],
 ) -> ([u32; BLOCK], [u32; BLOCK]) {
     let (mut first, mut second) = ([u32::MAX; BLOCK], [u32::MAX; BLOCK]);
-    for (k, point) in points.iter().enumerate() {
+    for (k, point) in points[..AROUND].iter().enumerate() {
         for l in 0..BLOCK {
             let (dx, dy) = (point[0] - x[l], point[1] - y[l]);
             let key = ((dx * dx + dy * dy).to_bits() & !15) | k as u32;

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::Reach;
 use crate::raster::coverage::Capsule;
 use crate::raster::distance::{Envelope, NearestByRows};
+use crate::texture::banded::Banded;
 use crate::texture::fields::BRANCH_FLARE;
 use crate::texture::pen::{Axis, BLOCK, Pen, block};
 use crate::units::TextureFrame;
@@ -167,7 +168,8 @@ impl Lattice<'_> {
             (capsule, if faint_veins { (width * width).min(1.0) as f32 } else { 1.0 })
         };
         let cones = coarse_edges(venation, spread).into_iter().map(cone);
-        self.weights(cones.filter(|(cone, _)| far.contains(&cone.widest())).collect())
+        let cones: Vec<_> = cones.filter(|(cone, _)| far.contains(&cone.widest())).collect();
+        self.weights(&cones)
     }
 
     /// The largest w = 1 − distance / reach over all speckles.
@@ -180,49 +182,75 @@ impl Lattice<'_> {
             let a = self.frame.pixel_from_leaf(speckle, self.side).as_vec2();
             (Capsule { a, b: a, radius_a: reach, radius_b: reach }, 1.0)
         };
-        self.weights(speckles.iter().map(cone).collect())
+        self.weights(&speckles.iter().map(cone).collect::<Vec<_>>())
     }
 
-    fn weights(&self, cones: Vec<(Capsule, f32)>) -> Vec<f32> {
-        pulp::Arch::new().dispatch(Cones { side: self.side, cones })
+    fn weights(&self, cones: &[Cone]) -> Vec<f32> {
+        let side = self.side;
+        let rows = |(cone, _): &Cone| {
+            let [_, rows] = cone.pixels(cone.widest(), side, 0..side);
+            rows
+        };
+        let cones = Banded::new(cones, side, BAND, rows);
+        let mut weights = vec![0.0; side * side];
+        let fill = |wide: &mut Vec<f32>, (i, weights): (usize, &mut [f32])| {
+            let rows = i * BAND..((i + 1) * BAND).min(side);
+            let cones = cones.band(i);
+            pulp::Arch::new().dispatch(Cones { side, rows, cones, wide, weights });
+        };
+        weights.par_chunks_mut(BAND * side).enumerate().for_each_init(Vec::new, fill);
+        weights
     }
 }
 
-/// Cones over the nodes, of their height on the axis of a capsule and 0 at its radius; the highest counts.
-struct Cones {
+/// Rows of the lattice that cones are drawn on at a time.
+const BAND: usize = 32;
+
+/// The height of a cone on the axis of a capsule; at its radius it is 0.
+type Cone = (Capsule, f32);
+
+/// Cones over some rows of nodes, of which the highest counts.
+struct Cones<'a> {
     side: usize,
-    cones: Vec<(Capsule, f32)>,
+    rows: Range<usize>,
+    cones: &'a [Cone],
+    /// The rows and after each some nodes that a cone at the end may run over into.
+    wide: &'a mut Vec<f32>,
+    weights: &'a mut [f32],
 }
 
-impl pulp::WithSimd for Cones {
-    type Output = Vec<f32>;
+impl pulp::WithSimd for Cones<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<f32> {
-        let side = self.side;
-        let mut weights = vec![0.0_f32; side * side + BLOCK];
-        for (cone, height) in &self.cones {
-            let [columns, rows] = cone.pixels(cone.widest(), side, 0..side);
-            let pen = Pen::new(cone, cone.widest());
-            for y in rows {
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { side, rows, cones, wide, weights } = self;
+        let stride = side + BLOCK;
+        wide.clear();
+        wide.resize(stride * rows.len(), 0.0);
+        for (cone, height) in cones {
+            let [columns, lines] = cone.pixels(cone.widest(), side, rows.clone());
+            // The slope instead of the radius: it is not divided by at every node.
+            let slope = |radius: f32| height / radius.max(1e-6);
+            let (radius_a, radius_b) = (slope(cone.radius_a), slope(cone.radius_b));
+            let pen = Pen::new(&Capsule { radius_a, radius_b, ..*cone }, cone.widest());
+            for y in lines {
                 let on_row = pen.on_row(y);
-                let columns = pen.chord(y, columns.clone());
-                for x in columns.clone().step_by(BLOCK) {
-                    let Axis { distance2, radius } = on_row.axis(x);
-                    let nodes = &mut weights[y * side + x..][..BLOCK];
+                for x in pen.chord(y, columns.clone()).step_by(BLOCK) {
+                    let Axis { distance2, radius: slope } = on_row.axis(x);
+                    let nodes = &mut wide[(y - rows.start) * stride + x..][..BLOCK];
                     let mut highest = block(nodes);
                     for i in 0..BLOCK {
-                        let own = height * (1.0 - distance2[i].sqrt() / radius[i].max(1e-6));
-                        // A block may run over into the next row, where it has no business.
-                        let higher = (own > highest[i]) & (x + i < side);
-                        highest[i] = if higher { own } else { highest[i] };
+                        let own = height - distance2[i].sqrt() * slope[i];
+                        highest[i] = if own > highest[i] { own } else { highest[i] };
                     }
                     nodes.copy_from_slice(&highest);
                 }
             }
         }
-        weights.truncate(side * side);
-        weights
+        for (row, wide) in weights.chunks_exact_mut(side).zip(wide.chunks_exact(stride)) {
+            row.copy_from_slice(&wide[..side]);
+        }
     }
 }
 

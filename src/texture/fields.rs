@@ -234,18 +234,19 @@ impl VeinRows {
     #[inline(always)]
     fn draw(&mut self, axis: &Axis, mm: f32, texels: Range<usize>) {
         let Axis { distance2, radius: here } = axis;
+        // By `max` where that is meant: a comparison becomes a store of some lanes, which is slow.
         let mut groove = block(&self.groove[texels.clone()]);
         for i in 0..BLOCK {
             let here2 = here[i] * here[i];
             let wide = (1.0 - distance2[i] / (GROOVE_RADII * GROOVE_RADII * here2)).max(0.0);
             let own = wide * wide * here[i] * mm;
-            groove[i] = if own > groove[i] { own } else { groove[i] };
+            groove[i] = groove[i].max(own);
         }
         self.groove[texels.clone()].copy_from_slice(&groove);
         let mut dome = block(&self.dome[texels.clone()]);
         for i in 0..BLOCK {
             let own = (here[i] * here[i] - distance2[i]).max(0.0).sqrt() * mm;
-            dome[i] = if own > dome[i] { own } else { dome[i] };
+            dome[i] = dome[i].max(own);
         }
         self.dome[texels.clone()].copy_from_slice(&dome);
         let mut shows = block(&self.shows[texels.clone()]);

@@ -241,8 +241,7 @@ impl pulp::WithSimd for Cones<'_> {
                     let nodes = &mut wide[(y - rows.start) * stride + x..][..BLOCK];
                     let mut highest = block(nodes);
                     for i in 0..BLOCK {
-                        let own = height - distance2[i].sqrt() * slope[i];
-                        highest[i] = if own > highest[i] { own } else { highest[i] };
+                        highest[i] = highest[i].max(height - distance2[i].sqrt() * slope[i]);
                     }
                     nodes.copy_from_slice(&highest);
                 }

@@ -55,7 +55,7 @@ impl pulp::WithSimd for Band<'_> {
 
     /// Where in each row something was painted.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<Range<usize>> {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Vec<Range<usize>> {
         let Self { scene, number, rows, sides, scratch } = self;
         let size = scene.size;
         let cover = scene.blade_cover(rows.clone());
@@ -93,7 +93,7 @@ impl pulp::WithSimd for Band<'_> {
                 strip.read_veins(&scratch.veins, line);
                 let stalk = stalk.as_ref().map(|stalk| &stalk[texels.clone()]);
                 strip.read_cover(&cover[texels.clone()], stalk);
-                strip.read_structure(scene, &structure);
+                strip.read_structure(simd, scene, &structure);
                 if let Some(wounds) = &wounds {
                     strip.read_wounds(scene, wounds);
                 }

@@ -188,7 +188,12 @@ impl Strip {
     /// Nets and grain.
     #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
-    pub(super) fn read_structure(&mut self, scene: &Scene, structure: &Structure) {
+    pub(super) fn read_structure<S: pulp::Simd>(
+        &mut self,
+        simd: S,
+        scene: &Scene,
+        structure: &Structure,
+    ) {
         let (mut bent, mut distance, mut number) = ([[0.0; LANES]; 2], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             // The net is drawn out and bent by the tissue's own unevenness.
@@ -202,7 +207,7 @@ impl Strip {
             if shown == 0.0 {
                 continue;
             }
-            structure.nets[k].along(&bent[0], &bent[1], &mut distance, &mut number);
+            structure.nets[k].along(simd, &bent, &mut distance, &mut number);
             let [none, full] = tissue::AWAY_MM[k];
             let line = structure.lines[k];
             let half = (0.7 * line).max(0.7);
@@ -216,9 +221,7 @@ impl Strip {
             }
         }
         let size = structure.grain_mm;
-        for i in 0..LANES {
-            self.grain[i] = structure.grain.at(self.x[i] / size);
-        }
+        self.grain = structure.grain.along(&self.x.map(|x| x / size));
         if self.stalked {
             for i in 0..LANES {
                 // The stalk is made of fibres: its grain is drawn out along it.

@@ -7,6 +7,8 @@
 //! Sizes are millimetres, so a larger texture shows more and not larger tissue; what would be finer
 //! than the texels fades.
 
+use pulp::Simd;
+
 use super::strip::{LANES, Lane};
 use crate::geometry::{noise, whole};
 
@@ -97,7 +99,13 @@ impl Net {
     /// The net at places (mm) between the corners it was prepared for: distance to the border of the
     /// areole (mm), and a number of the areole, 0–1.
     #[inline(always)]
-    pub(super) fn along(&self, xs: &Lane, ys: &Lane, border: &mut Lane, tone: &mut Lane) {
+    pub(super) fn along<S: Simd>(
+        &self,
+        simd: S,
+        [xs, ys]: &[Lane; 2],
+        border: &mut Lane,
+        tone: &mut Lane,
+    ) {
         let per_cell = 1.0 / self.size;
         let (mut cells, mut within) = ([[0_i32; LANES]; 2], [[0.0_f32; LANES + BLOCK]; 2]);
         for i in 0..LANES {
@@ -121,7 +129,7 @@ impl Net {
                     <&[f32; BLOCK]>::try_from(&within[axis][block..block + BLOCK])
                         .expect("a slice of that length")
                 };
-                let (nearest, next) = two_nearest(&points, at(0), at(1));
+                let [nearest, next] = two_nearest(simd, &points, at(0), at(1));
                 for l in 0..BLOCK {
                     first[block + l] = points[nearest[l] as usize & 15];
                     second[block + l] = points[next[l] as usize & 15];
@@ -149,21 +157,29 @@ impl Net {
 /// Without a branch, which would be mispredicted at every other point: positive floats sort as their
 /// bits do, and the last bits carry the index.
 #[inline(always)]
-fn two_nearest(
+fn two_nearest<S: Simd>(
+    simd: S,
     points: &Around,
     x: &[f32; BLOCK],
     y: &[f32; BLOCK],
-) -> ([u32; BLOCK], [u32; BLOCK]) {
-    let (mut first, mut second) = ([u32::MAX; BLOCK], [u32::MAX; BLOCK]);
-    for (k, point) in points[..AROUND].iter().enumerate() {
-        for l in 0..BLOCK {
-            let (dx, dy) = (point[0] - x[l], point[1] - y[l]);
-            let key = ((dx * dx + dy * dy).to_bits() & !15) | k as u32;
-            second[l] = second[l].min(first[l].max(key));
-            first[l] = first[l].min(key);
+) -> [[u32; BLOCK]; 2] {
+    const { assert!(BLOCK.is_multiple_of(S::F32_LANES), "blocks are made of whole vectors") };
+    let mut found = [[u32::MAX; BLOCK]; 2];
+    let [nearest, next] = found.each_mut().map(|keys| S::as_mut_simd_u32s(keys).0.iter_mut());
+    let places = S::as_simd_f32s(x).0.iter().zip(S::as_simd_f32s(y).0);
+    let distance_bits = simd.splat_u32s(!15);
+    for ((first, second), (&x, &y)) in nearest.zip(next).zip(places) {
+        for (k, &[px, py, ..]) in (0..).zip(&points[..AROUND]) {
+            let dx = simd.sub_f32s(simd.splat_f32s(px), x);
+            let dy = simd.sub_f32s(simd.splat_f32s(py), y);
+            let squared = simd.add_f32s(simd.mul_f32s(dx, dx), simd.mul_f32s(dy, dy));
+            let bits = simd.and_u32s(simd.transmute_u32s_f32s(squared), distance_bits);
+            let key = simd.or_u32s(bits, simd.splat_u32s(k));
+            *second = simd.min_u32s(*second, simd.max_u32s(*first, key));
+            *first = simd.min_u32s(*first, key);
         }
     }
-    (first, second)
+    found
 }
 
 /// How much of structures `size` mm wide a texture of so many pixels to the millimetre can show.
@@ -179,6 +195,7 @@ pub(super) fn grain_size(pixels_per_mm: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulp::WithSimd;
 
     /// Cell by cell, every point of a wide neighbourhood.
     fn slow(size: f32, seed: u32, x: f32, y: f32) -> (f32, f32) {
@@ -198,6 +215,19 @@ mod tests {
         ((points[1].0 - points[0].0) / (2.0 * apart) * size, points[0].2)
     }
 
+    struct Along<'a>(&'a Net, [Lane; 2]);
+
+    impl WithSimd for Along<'_> {
+        type Output = [Lane; 2];
+
+        fn with_simd<S: Simd>(self, simd: S) -> [Lane; 2] {
+            let mut found = [[0.0; LANES]; 2];
+            let [border, tone] = &mut found;
+            self.0.along(simd, &self.1, border, tone);
+            found
+        }
+    }
+
     #[test]
     fn a_net_along_a_strip_is_that_of_a_full_search() {
         for (size, step) in [(0.85, 0.05), (0.27, 0.05), (2.1, 0.9)] {
@@ -207,8 +237,9 @@ mod tests {
             for row in 0..40 {
                 let xs: Lane = std::array::from_fn(|i| i as f32 * step - 20.0 + 0.3 * row as f32);
                 let ys: Lane = std::array::from_fn(|i| 0.4 * row as f32 - 9.0 + 0.01 * i as f32);
-                let (mut border, mut tone) = ([0.0; LANES], [0.0; LANES]);
-                net.along(&xs, &ys, &mut border, &mut tone);
+                let [border, tone] = pulp::Arch::new().dispatch(Along(&net, [xs, ys]));
+                let plain = Along(&net, [xs, ys]).with_simd(pulp::Scalar::new());
+                assert_eq!([border, tone], plain, "no result depends on the processor");
                 for i in 0..LANES {
                     let (expected, areole) = slow(size, 5, xs[i], ys[i]);
                     // The nearest two of nine are not always those of twenty-five, and on a border

@@ -117,12 +117,12 @@ impl pulp::WithSimd for NodeRow<'_> {
             noise.prepare(left.x / size, right.x / size, left.y / size);
             for start in span.clone().step_by(NODES) {
                 let end = (start + NODES).min(span.end);
-                let mut found = [0.0; NODES];
+                let mut places = [0.0; NODES];
                 let (first, most) = (left.x + (start - span.start) as f32 * spacing, right.x);
-                for (i, found) in found.iter_mut().enumerate() {
-                    *found = noise.at((first + i as f32 * spacing).min(most) / size);
+                for (i, place) in places.iter_mut().enumerate() {
+                    *place = (first + i as f32 * spacing).min(most) / size;
                 }
-                for (node, found) in nodes[start..end].iter_mut().zip(found) {
+                for (node, found) in nodes[start..end].iter_mut().zip(noise.along(places)) {
                     node[3 + k] = found;
                 }
             }

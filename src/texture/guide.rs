@@ -16,6 +16,7 @@ use glam::DVec2;
 pub(super) use self::lattice::Lattice;
 use self::lattice::vein_lines;
 use self::smooth::{NOISE_NODES_MM, Smooth, SmoothFields};
+use super::strip::{LANES, Lane};
 use crate::geometry::polygon;
 use crate::margin::Margin;
 use crate::units::TextureFrame;
@@ -230,17 +231,32 @@ pub(super) struct GuideRow<'a> {
 }
 
 impl GuideRow<'_> {
-    /// The guide at column `x` of the texture.
+    /// The guide at some columns of the texture, in the order of [`Place::array`]; past their end the last
+    /// is repeated.
     #[inline(always)]
-    pub(super) fn at(&self, x: usize) -> Place {
-        #[inline(always)]
-        fn at<const N: usize>(nodes: &[[f32; N]], columns: &[(u32, f32)], x: usize) -> [f32; N] {
-            let (i, t) = columns[x];
-            let i = i as usize;
-            mixed(&nodes[i], &nodes[i + 1], t)
+    pub(super) fn read(&self, columns: Range<usize>, lanes: &mut [Lane; 8]) {
+        // All of a node together, and then number by number.
+        let (mut fine, mut smooth) = ([[0.0; 2]; LANES], [[0.0; 8]; LANES]);
+        for i in 0..LANES {
+            let x = (columns.start + i).min(columns.end - 1);
+            mix(&self.mixed.fine, self.columns[x], &mut fine[i]);
+            mix(&self.mixed.smooth, self.smooth_columns[x], &mut smooth[i]);
         }
-        let fine = at(&self.mixed.fine, self.columns, x);
-        place(&fine, &at(&self.mixed.smooth, self.smooth_columns, x))
+        for i in 0..LANES {
+            let place = place(&fine[i], &smooth[i]).array();
+            for k in 0..8 {
+                lanes[k][i] = place[k];
+            }
+        }
+    }
+}
+
+/// What lies between a node, found by its number, and the next one.
+#[inline(always)]
+fn mix<const N: usize>(nodes: &[[f32; N]], (i, t): (u32, f32), found: &mut [f32; N]) {
+    let (a, b) = (&nodes[i as usize], &nodes[i as usize + 1]);
+    for k in 0..N {
+        found[k] = a[k] + (b[k] - a[k]) * t;
     }
 }
 
@@ -286,6 +302,8 @@ mod tests {
         for y in 0..size {
             let row = guide.row(y, &mut nodes);
             for x in 0..size {
+                let mut lanes = [[0.0; LANES]; 8];
+                row.read(x..x + 1, &mut lanes);
                 let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let p = frame.leaf_from_pixel(centre, size);
                 let distance = edges.nearest(p, 1000.0).expect("an edge").0.sqrt();
@@ -293,7 +311,7 @@ mod tests {
                 if expected < -1.5 * spacing {
                     continue; // Far outside nobody asks, and only the cell is known.
                 }
-                let found = f64::from(row.at(x).edge);
+                let found = f64::from(lanes[0][0]);
                 let limit = if expected < 4.0 { 0.1 } else { 0.5 } * spacing;
                 assert!((found - expected).abs() < limit, "{p}: {found} {expected}");
             }

@@ -148,12 +148,7 @@ impl Strip {
 
     #[inline(always)]
     pub(super) fn read_guide(&mut self, row: &GuideRow<'_>) {
-        for i in 0..LANES {
-            let node = row.at(self.start + i.min(self.len - 1)).array();
-            for (lane, value) in self.guide.iter_mut().zip(node) {
-                lane[i] = value;
-            }
-        }
+        row.read(self.start..self.start + self.len, &mut self.guide);
     }
 
     #[inline(always)]

@@ -167,14 +167,16 @@ fn two_nearest<S: Simd>(
     let mut found = [[u32::MAX; BLOCK]; 2];
     let [nearest, next] = found.each_mut().map(|keys| S::as_mut_simd_u32s(keys).0.iter_mut());
     let places = S::as_simd_f32s(x).0.iter().zip(S::as_simd_f32s(y).0);
-    let distance_bits = simd.splat_u32s(!15);
+    let (distance_bits, one) = (simd.splat_u32s(!15), simd.splat_u32s(1));
     for ((first, second), (&x, &y)) in nearest.zip(next).zip(places) {
-        for (k, &[px, py, ..]) in (0..).zip(&points[..AROUND]) {
+        let mut index = simd.splat_u32s(0);
+        for &[px, py, ..] in &points[..AROUND] {
             let dx = simd.sub_f32s(simd.splat_f32s(px), x);
             let dy = simd.sub_f32s(simd.splat_f32s(py), y);
             let squared = simd.add_f32s(simd.mul_f32s(dx, dx), simd.mul_f32s(dy, dy));
             let bits = simd.and_u32s(simd.transmute_u32s_f32s(squared), distance_bits);
-            let key = simd.or_u32s(bits, simd.splat_u32s(k));
+            let key = simd.or_u32s(bits, index);
+            index = simd.add_u32s(index, one);
             *second = simd.min_u32s(*second, simd.max_u32s(*first, key));
             *first = simd.min_u32s(*first, key);
         }

@@ -22,6 +22,22 @@ pub fn floor(x: f32) -> i32 {
     near - i32::from(x < near as f32)
 }
 
+/// The number, or 0 or `most` where it is less or more; of what is not a number 0.
+#[must_use]
+#[inline(always)]
+pub fn held(x: f32, most: f32) -> f32 {
+    // Not `clamp`, which lets through what is not a number.
+    let x = if x > 0.0 { x } else { 0.0 };
+    if x < most { x } else { most }
+}
+
+/// As [`held`], cut to a whole number, for `most` ≤ 2²²: what a saturating cast does.
+#[must_use]
+#[inline(always)]
+pub fn cut(x: f32, most: f32) -> i32 {
+    floor(held(x, most))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,6 +56,10 @@ mod tests {
         for x in random.chain(edges) {
             assert_eq!(floor(x), x.floor() as i32, "{x}");
             assert_eq!(nearest(x), x.round_ties_even() as i32, "{x}");
+            assert_eq!(cut(x, 255.0), i32::from(x as u8), "{x}");
+        }
+        for x in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, f32::MIN] {
+            assert_eq!(cut(x, 65535.0), i32::from(x as u16), "{x}");
         }
     }
 }

@@ -64,14 +64,14 @@ impl Tint {
 #[must_use]
 #[inline(always)]
 pub fn word(share: f32) -> u16 {
-    whole::floor(share.clamp(0.0, 1.0) * 65535.0 + 0.5) as u16
+    whole::cut(share * 65535.0 + 0.5, 65535.0) as u16
 }
 
 /// A share 0–1 as a byte, rounded; what is less or more is 0 or 1.
 #[must_use]
 #[inline(always)]
 pub fn byte(share: f32) -> u8 {
-    whole::floor(share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+    whole::cut(share * 255.0 + 0.5, 255.0) as u8
 }
 
 #[cfg(test)]

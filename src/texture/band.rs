@@ -143,15 +143,17 @@ impl SideRows<'_> {
             let [r, g, b, ..] = shades[i];
             [byte(r), byte(g), byte(b), byte(alpha[i])]
         });
-        lay!(self.height, 0, |i| sixteen(heights[i] * per_height + 32768.0));
-        lay!(self.bump, 0, |i| whole::floor(bumps[i].clamp(0.0, 255.0)) as u8);
+        lay!(self.height, 0, |i| whole::cut(heights[i] * per_height + 32768.0, 65535.0) as u16);
+        lay!(self.bump, 0, |i| whole::cut(bumps[i], 255.0) as u8);
         lay!(self.roughness, 0, |i| byte(roughness[i]));
         lay!(self.transmission, 0, |i| byte(transmission[i]));
         lay!(self.translucency, [0; 3], |i| {
             let [_, _, _, r, g, b, ..] = shades[i];
             [byte(r), byte(g), byte(b)]
         });
-        lay!(self.thickness, 0, |i| sixteen(painted.thickness[i] * per_thickness + 0.5));
+        lay!(self.thickness, 0, |i| {
+            whole::cut(painted.thickness[i] * per_thickness + 0.5, 65535.0) as u16
+        });
         lay!(self.vein_mask, 0, |i| byte(strip.vein_mask(i)));
         lay!(self.vein_order, 0, |i| strip.vein_order(i));
         lay!(self.deep_colour, [0; 4], |i| {
@@ -166,12 +168,6 @@ impl SideRows<'_> {
         });
         lay!(self.deep_vein_mask, 0, |i| word(strip.vein_mask(i)));
     }
-}
-
-/// The whole part of a number in 16 bits.
-#[inline(always)]
-fn sixteen(x: f32) -> u16 {
-    whole::floor(x.clamp(0.0, 65535.0)) as u16
 }
 
 /// Copies a strip to its texels; behind, from right to left.

@@ -116,7 +116,7 @@ impl Lattice {
                 } else {
                     (amount - STRUCTURE[0] as f32) * PER_STRUCTURE
                 };
-                place.clamp(0.0, (NODES[k] - 1) as f32 - 1e-3)
+                whole::held(place, (NODES[k] - 1) as f32 - 1e-3)
             });
             let node = place.map(whole::floor);
             // How far past its node a place lies on each axis, from far to near. Positive floats sort as

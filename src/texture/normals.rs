@@ -22,7 +22,7 @@ pub fn from_slopes(dx: f32, dy: f32) -> [f32; 3] {
 #[must_use]
 #[inline(always)]
 pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
-    normal.map(|component| whole::floor(component * 127.5 + 128.0) as u8)
+    normal.map(|component| whole::cut(component * 127.5 + 128.0, 255.0) as u8)
 }
 
 /// Fills the normals of a side from its heights, where the leaf is; flat elsewhere. One step of a

@@ -51,8 +51,10 @@ mod tests {
             let reach = [1.0, 30.0, 70_000.0, f64::from(most)][i % 4];
             rng.between(-reach, reach) as f32
         });
-        let edges =
-            [0.0, -0.0, 0.5, -0.5, 1.5, 2.5, -1.0, 254.5, 255.0, most, -most, 1e-30, -1e-30];
+        let edges = [
+            0.0, -0.0, 0.5, -0.5, 1.5, -1.5, 2.5, 0.9, 1.0, -1.0, -2.0, 254.5, 255.0, 123_456.7,
+            most, -most, 1e-30, -1e-30,
+        ];
         for x in random.chain(edges) {
             assert_eq!(floor(x), x.floor() as i32, "{x}");
             assert_eq!(nearest(x), x.round_ties_even() as i32, "{x}");

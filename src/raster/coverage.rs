@@ -93,7 +93,7 @@ fn add_edge(cells: &mut [f32], width: f64, xa: f64, xb: f64, dy: f64) {
 }
 
 /// A tapered stroke: a segment with a radius at either end.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     /// One end.
     pub a: Vec2,

@@ -2,7 +2,8 @@
 //! how far the nearest one is.
 //!
 //! Segments are listed in every cell of a uniform grid that their box touches. Cells are about one
-//! mean segment wide, so a query near few segments looks at few.
+//! mean segment wide, so a query near few segments looks at few. An empty cell knows how far the next
+//! one is that is not, so that a query far from all of them looks at few cells, too.
 
 use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
 use super::rings::Size;
@@ -19,6 +20,8 @@ pub struct SegmentIndex {
     /// Where the list of each cell starts in `items`.
     starts: Vec<u32>,
     items: Vec<u32>,
+    /// From each cell the number of columns or rows, whichever is more, to the nearest that is not empty.
+    away: Vec<u16>,
     /// For each cell that no segment comes into, whether it lies inside the polygon they make.
     inside: Vec<bool>,
 }
@@ -53,9 +56,11 @@ impl SegmentIndex {
             rows,
             starts: vec![0; columns * rows + 1],
             items: Vec::new(),
+            away: Vec::new(),
             inside: Vec::new(),
         };
         index.fill();
+        index.measure_emptiness();
         index.find_inside();
         index
     }
@@ -87,6 +92,32 @@ impl SegmentIndex {
         }
     }
 
+    /// In two sweeps over the rows: a way of king's moves goes through a neighbour that one of them has passed
+    /// before.
+    fn measure_emptiness(&mut self) {
+        let (columns, rows) = (self.columns, self.rows);
+        let far = columns.max(rows) as u16;
+        self.away = (0..columns * rows)
+            .map(|i| if self.starts[i] == self.starts[i + 1] { far } else { 0 })
+            .collect();
+        let mut sweep = |i: usize, row: Option<usize>, beside: Option<usize>| {
+            let column = i % columns;
+            let around = column.saturating_sub(1)..(column + 2).min(columns);
+            let others =
+                row.into_iter().flat_map(|row| around.clone().map(move |x| row * columns + x));
+            let least = others.chain(beside).map(|other| self.away[other]).min().unwrap_or(far);
+            self.away[i] = self.away[i].min(least + 1);
+        };
+        for i in 0..columns * rows {
+            let (row, column) = (i / columns, i % columns);
+            sweep(i, row.checked_sub(1), (column > 0).then(|| i - 1));
+        }
+        for i in (0..columns * rows).rev() {
+            let (row, column) = (i / columns, i % columns);
+            sweep(i, (row + 1 < rows).then_some(row + 1), (column + 1 < columns).then_some(i + 1));
+        }
+    }
+
     /// The cells that a box touches, clamped to the grid.
     fn cells(&self, min: DVec2, max: DVec2) -> (usize, usize, usize, usize) {
         let low = ((min - self.min) * self.per_cell).max(DVec2::ZERO);
@@ -108,7 +139,20 @@ impl SegmentIndex {
     /// some more than once.
     pub fn any_near(&self, a: DVec2, b: DVec2, mut test: impl FnMut(usize) -> bool) -> bool {
         let (x0, y0, x1, y1) = self.cells(a.min(b), a.max(b));
-        (y0..=y1).any(|y| (x0..=x1).any(|x| self.cell(x, y).iter().any(|&i| test(i as usize))))
+        let away = |x: usize, y: usize| usize::from(self.away[y * self.columns + x]);
+        if away(x0, y0) > (x1 - x0).max(y1 - y0) {
+            return false;
+        }
+        (y0..=y1).any(|y| {
+            let mut x = x0;
+            while x <= x1 {
+                if self.cell(x, y).iter().any(|&i| test(i as usize)) {
+                    return true;
+                }
+                x += away(x, y).max(1);
+            }
+            false
+        })
     }
 
     /// Whether the segment a–b touches any of these.
@@ -181,7 +225,8 @@ impl SegmentIndex {
             self.min,
             self.min + DVec2::new(self.columns as f64, self.rows as f64) / self.per_cell,
         ));
-        for ring in 0..size.last_ring() {
+        let empty = usize::from(self.away[home.1 * self.columns + home.0]);
+        for ring in empty..size.last_ring() {
             let clear = (ring.saturating_sub(1) as f64 / self.per_cell).max(outside);
             if clear * clear > best.0 {
                 break;
@@ -218,20 +263,35 @@ mod tests {
 
     #[test]
     fn the_index_agrees_with_looking_at_every_edge() {
-        let outline = star(34);
-        let index = SegmentIndex::of_polygon(&outline);
-        let mut rng = Seed(5).stream(Stage::Tissue);
-        for _ in 0..2000 {
-            let p = DVec2::new(rng.between(-12.0, 12.0), rng.between(-12.0, 12.0));
-            let q = p + DVec2::new(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0));
-            assert_eq!(index.contains(p), polygon::contains(&outline, p), "{p}");
-            let touches = polygon::edges(&outline).any(|(a, b)| segments_touch(a, b, p, q));
-            assert_eq!(index.touches(p, q), touches);
-            let nearest = polygon::edges(&outline)
-                .map(|(a, b)| p.distance_squared(nearest_on_segment(a, b, p)))
-                .fold(f64::INFINITY, f64::min);
-            let (found, _) = index.nearest(p, 100.0).expect("something is nearest");
-            assert!((found - nearest).abs() < 1e-12);
+        // Among cells as wide as the whole, and among many that are empty.
+        for outline in [star(34), polygon::subdivided(&star(34), 0.3)] {
+            let index = SegmentIndex::of_polygon(&outline);
+            let mut rng = Seed(5).stream(Stage::Tissue);
+            for i in 0..2000 {
+                let p = DVec2::new(rng.between(-12.0, 12.0), rng.between(-12.0, 12.0));
+                let reach = if i % 4 == 0 { 9.0 } else { 2.0 };
+                let q = p + DVec2::new(rng.between(-reach, reach), rng.between(-reach, reach));
+                assert_eq!(index.contains(p), polygon::contains(&outline, p), "{p}");
+                let touches = polygon::edges(&outline).any(|(a, b)| segments_touch(a, b, p, q));
+                assert_eq!(index.touches(p, q), touches);
+                let nearest = polygon::edges(&outline)
+                    .map(|(a, b)| p.distance_squared(nearest_on_segment(a, b, p)))
+                    .fold(f64::INFINITY, f64::min);
+                let (found, _) = index.nearest(p, 100.0).expect("something is nearest");
+                assert!((found - nearest).abs() < 1e-12);
+            }
         }
+    }
+
+    #[test]
+    fn every_cell_knows_how_far_the_next_is_that_is_not_empty() {
+        let index = SegmentIndex::of_polygon(&polygon::subdivided(&star(12), 0.5));
+        let cells = || (0..index.rows).flat_map(|y| (0..index.columns).map(move |x| (x, y)));
+        let full: Vec<_> = cells().filter(|&(x, y)| !index.cell(x, y).is_empty()).collect();
+        for (x, y) in cells() {
+            let away = full.iter().map(|&(i, j)| x.abs_diff(i).max(y.abs_diff(j))).min();
+            assert_eq!(Some(usize::from(index.away[y * index.columns + x])), away, "{x}, {y}");
+        }
+        assert!(cells().count() > 3 * full.len(), "most are empty");
     }
 }

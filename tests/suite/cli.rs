@@ -352,7 +352,7 @@ fn bench_prints_a_table_and_the_exponent() {
 #[test]
 fn a_killed_run_leaves_whole_files_and_goes_on_where_it_stopped() {
     let folder = fresh();
-    let arguments = small(&["generate", "beech", "--seeds", "1-60", "-t", "1"]);
+    let arguments = small(&["generate", "beech", "--seeds", "1-12", "-t", "1"]);
     let killed = [&arguments[..], &["-o", "killed", "--skip-existing"]].concat();
     let program = assert_cmd::cargo::cargo_bin("venation");
     let mut child = std::process::Command::new(program)

@@ -131,6 +131,8 @@ fn vary_on_the_command_line_is_vary_in_the_file_and_in_set() {
         all.extend([
             "--maps", "none", "--format", "none", "--size", "16", "-o", name, "--seed", "5",
         ]);
+        // Nothing is asked of the net between the veins that are laid.
+        all.extend(["--set", "veins.spawn_rate=1"]);
         succeed(folder.path(), &all);
         std::fs::read_to_string(folder.path().join(name).join("leaf.toml")).expect("leaf.toml")
     };

@@ -19,8 +19,8 @@ use crate::support::{contents, fail, fresh, succeed};
 use crate::textures::Settings;
 
 fn painted(settings: &Settings) -> TextureSet {
-    let margin = sample_leaf::ovate(60.0);
-    settings.painted(&margin, &sample_leaf::veins(&margin))
+    let (margin, veins) = sample_leaf::veined();
+    settings.painted(margin, veins)
 }
 
 fn linear(byte: u8) -> f64 {

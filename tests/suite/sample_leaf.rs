@@ -1,6 +1,8 @@
 //! A leaf for tests and benches of painting that need veins but not their growth: an ovate blade
 //! filled by plain space colonisation in the frame of the mature leaf.
 
+use std::sync::LazyLock;
+
 use glam::DVec2;
 use venation::geometry::polygon;
 use venation::margin::Margin;
@@ -18,6 +20,16 @@ pub(crate) fn ovate(length: f64) -> Margin {
         (1..80).rev().map(|i| i as f64 / 80.0).map(|y| DVec2::new(-0.96 * side(y), y * length)),
     );
     Margin::new(outline, 80, Vec::new(), "").expect("an ovate blade is a margin")
+}
+
+/// A blade of 60 mm and its veins, grown once for all that ask.
+pub(crate) fn veined() -> &'static (Margin, Venation) {
+    static LEAF: LazyLock<(Margin, Venation)> = LazyLock::new(|| {
+        let margin = ovate(60.0);
+        let veins = veins(&margin);
+        (margin, veins)
+    });
+    &LEAF
 }
 
 /// A blade without veins.

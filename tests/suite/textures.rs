@@ -67,8 +67,8 @@ fn midrib(margin: &Margin) -> Venation {
 
 #[test]
 fn every_guarantee_holds_on_a_sample_leaf() {
-    let margin = sample_leaf::ovate(60.0);
-    let set = Settings::of_size(256).painted(&margin, &sample_leaf::veins(&margin));
+    let (margin, veins) = sample_leaf::veined();
+    let set = Settings::of_size(256).painted(margin, veins);
     assert_eq!(set.check(), None);
 }
 
@@ -106,8 +106,8 @@ fn coverage_sums_to_the_area_of_the_blade() {
 
 #[test]
 fn normals_are_the_slopes_of_the_heights() {
-    let margin = sample_leaf::ovate(60.0);
-    let set = Settings::of_size(256).painted(&margin, &sample_leaf::veins(&margin));
+    let (margin, veins) = sample_leaf::veined();
+    let set = Settings::of_size(256).painted(margin, veins);
     let texel_mm = 1.0 / set.frame.pixels_per_mm(256);
     for side in [&set.front, &set.back] {
         let height = |x, y| f64::from(side.height[(x, y)]) / 65535.0 * set.height_range_mm;
@@ -158,8 +158,8 @@ fn a_raised_vein_is_bright_red_on_its_right_side_and_a_sunken_one_on_its_left() 
 
 #[test]
 fn empty_texels_wear_the_nearest_opaque_leaf() {
-    let margin = sample_leaf::ovate(60.0);
-    let set = Settings::of_size(64).painted(&margin, &sample_leaf::veins(&margin));
+    let (margin, veins) = sample_leaf::veined();
+    let set = Settings::of_size(64).painted(margin, veins);
     for side in [&set.front, &set.back] {
         let colour = &side.base_colour;
         let places = || (0..64).flat_map(|y| (0..64).map(move |x| (x, y)));
@@ -180,8 +180,8 @@ fn empty_texels_wear_the_nearest_opaque_leaf() {
 
 #[test]
 fn the_back_is_mirrored_paler_and_greyer() {
-    let margin = sample_leaf::ovate(60.0);
-    let set = Settings::of_size(128).painted(&margin, &sample_leaf::veins(&margin));
+    let (margin, veins) = sample_leaf::veined();
+    let set = Settings::of_size(128).painted(margin, veins);
     let back = set.back.base_colour.mirrored();
     let [mut front_value, mut back_value] = [0_u64; 2];
     for (front, back) in set.front.base_colour.values().iter().zip(back.values()) {

@@ -2,7 +2,11 @@
 //!
 //! Source: A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for computing distance
 //! transforms in linear time", 2000: nearest site in each column, then the lower envelope of
-//! parabolas along each row. Departs from it: the site is kept, not only its distance.
+//! parabolas along each row. Departs from it: the site is kept, not only its distance; the columns are
+//! gone through band by band, so that no picture of them is needed; and between two sites of a row only
+//! the columns between them are looked at.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -22,29 +26,36 @@ pub fn nearest_sites(
     height: usize,
     is_site: impl Fn(usize) -> bool + Sync,
 ) -> Grid<u32> {
-    let rows = NearestByRows::new(width, height, is_site);
+    let sites = NearestByRows::new(width, height, is_site);
     let mut nearest = Grid::filled(width, height, NO_SITE);
-    nearest.values_mut().par_chunks_mut(width.max(1)).enumerate().for_each_init(
-        Envelope::default,
-        |envelope, (y, row)| {
-            rows.runs(y, envelope, |run, site| row[run].fill(site));
-        },
-    );
+    let fill = |reader: &mut Reader<'_>, (band, pixels): (usize, &mut [u32])| {
+        reader.go_to(band);
+        for (y, row) in (band * BAND..).zip(pixels.chunks_mut(width)) {
+            reader.runs(y, 0..width, |run, site| row[run].fill(site));
+        }
+    };
+    let bands = nearest.values_mut().par_chunks_mut((BAND * width).max(1)).enumerate();
+    bands.for_each_init(|| sites.reader(), fill);
     nearest
 }
+
+/// Rows of which the nearest sites are worked out together.
+pub const BAND: usize = 32;
 
 /// The nearest sites as runs of pixels of a row that have one in common: for pictures of which only
 /// some pixels are asked for, and which would be large if written down.
 #[derive(Debug)]
 pub struct NearestByRows {
     width: usize,
-    /// For every pixel the row of the nearest site in its column.
-    column_sites: Vec<u16>,
+    /// The sites of each row, as runs from left to right, row by row.
+    sites: Vec<Range<u16>>,
+    /// Where the runs of each row begin, and where the last ends.
+    firsts: Vec<usize>,
+    /// For every band and column the row of the last site above the band.
+    above: Vec<u16>,
+    /// Likewise of the first site below.
+    below: Vec<u16>,
 }
-
-/// What [`NearestByRows::runs`] uses from row to row.
-#[derive(Debug, Default)]
-pub struct Envelope(Vec<Parabola>);
 
 impl NearestByRows {
     /// The sites of a picture.
@@ -53,86 +64,157 @@ impl NearestByRows {
     ///
     /// If a side is longer than 16 384: squared distances would leave 32 bits.
     #[must_use]
-    pub fn new(width: usize, height: usize, is_site: impl Fn(usize) -> bool) -> Self {
-        Self::of_rows(width, height, |y| {
-            let is_site = &is_site;
-            (0..width, move |x: usize| is_site(y * width + x))
-        })
+    pub fn new(width: usize, height: usize, is_site: impl Fn(usize) -> bool + Sync) -> Self {
+        Self::of_rows(width, height, |y| runs_of(0..width, |x| is_site(y * width + x)))
     }
 
-    /// The sites of a square, each row of which has some among its columns.
+    /// The sites that `row` gives for each row, as [`runs_of`] does.
     ///
     /// # Panics
     ///
     /// If a side is longer than 16 384.
     #[must_use]
-    pub fn within<F: Fn(usize) -> bool>(
-        size: usize,
-        row: impl Fn(usize) -> (std::ops::Range<usize>, F),
-    ) -> Self {
-        Self::of_rows(size, size, row)
-    }
-
-    fn of_rows<F: Fn(usize) -> bool>(
+    pub fn of_rows(
         width: usize,
         height: usize,
-        row: impl Fn(usize) -> (std::ops::Range<usize>, F),
+        row: impl Fn(usize) -> Vec<Range<u16>> + Sync,
     ) -> Self {
         assert!(width.max(height) <= 1 << 14, "squared distances need to fit 32 bits");
-        Self { width, column_sites: nearest_in_columns(width, height, row) }
+        let rows: Vec<Vec<Range<u16>>> = (0..height).into_par_iter().map(&row).collect();
+        let mut firsts = vec![0];
+        firsts.extend(rows.iter().scan(0, |sum, row| {
+            *sum += row.len();
+            Some(*sum)
+        }));
+        let sites = rows.concat();
+        let bands = height.div_ceil(BAND);
+        let mut sites = Self { width, sites, firsts, above: Vec::new(), below: Vec::new() };
+        sites.above = vec![NO_ROW; width * bands];
+        sites.below = vec![NO_ROW; width * bands];
+        let mut seen = vec![NO_ROW; width];
+        for band in 0..bands {
+            sites.above[band * width..(band + 1) * width].copy_from_slice(&seen);
+            for y in sites.rows(band) {
+                sites.mark(y, &mut seen);
+            }
+        }
+        seen.fill(NO_ROW);
+        for band in (0..bands).rev() {
+            sites.below[band * width..(band + 1) * width].copy_from_slice(&seen);
+            for y in sites.rows(band).rev() {
+                sites.mark(y, &mut seen);
+            }
+        }
+        sites
     }
 
-    /// Calls `each` with every run of row `y`, from left to right, and the index of its site. There is
-    /// no run where there is no site.
+    /// Writes the number of a row where it has sites.
+    fn mark(&self, y: usize, columns: &mut [u16]) {
+        for run in self.sites_of(y) {
+            columns[usize::from(run.start)..usize::from(run.end)].fill(y as u16);
+        }
+    }
+
+    fn sites_of(&self, y: usize) -> &[Range<u16>] {
+        &self.sites[self.firsts[y]..self.firsts[y + 1]]
+    }
+
+    /// The rows of a band.
+    pub fn rows(&self, band: usize) -> Range<usize> {
+        band * BAND..((band + 1) * BAND).min(self.firsts.len() - 1)
+    }
+
+    /// What lies between the sites of a row, from left to right.
+    pub fn gaps(&self, y: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+        let sites = self.sites_of(y);
+        let starts = std::iter::once(0).chain(sites.iter().map(|run| usize::from(run.end)));
+        let ends = sites.iter().map(|run| usize::from(run.start)).chain([self.width]);
+        starts.zip(ends).map(|(start, end)| start..end).filter(|gap| !gap.is_empty())
+    }
+
+    /// Reads them; each thread has its own.
+    #[must_use]
+    pub fn reader(&self) -> Reader<'_> {
+        Reader { sites: self, first: 0, nearest: Vec::new(), envelope: Vec::new() }
+    }
+}
+
+/// The runs of the columns that are sites.
+pub fn runs_of(columns: Range<usize>, is_site: impl Fn(usize) -> bool) -> Vec<Range<u16>> {
+    let mut runs = Vec::new();
+    let mut x = columns.start;
+    while x < columns.end {
+        let start = (x..columns.end).find(|&x| is_site(x)).unwrap_or(columns.end);
+        x = (start..columns.end).find(|&x| !is_site(x)).unwrap_or(columns.end);
+        if start < x {
+            runs.push(start as u16..x as u16);
+        }
+    }
+    runs
+}
+
+/// Reads the nearest sites, a band of rows at a time.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    sites: &'a NearestByRows,
+    first: usize,
+    /// For every pixel of the band the row of the nearest site in its column.
+    nearest: Vec<u16>,
+    envelope: Vec<Parabola>,
+}
+
+impl Reader<'_> {
+    /// Makes the rows of a band ready.
+    pub fn go_to(&mut self, band: usize) {
+        let Self { sites, first, nearest, .. } = self;
+        let (width, rows) = (sites.width, sites.rows(band));
+        let columns = band * width..(band + 1) * width;
+        *first = rows.start;
+        nearest.clear();
+        for y in rows.clone() {
+            match nearest.len().checked_sub(width) {
+                Some(before) => nearest.extend_from_within(before..),
+                None => nearest.extend_from_slice(&sites.above[columns.clone()]),
+            }
+            let here = nearest.len() - width;
+            sites.mark(y, &mut nearest[here..]);
+        }
+        for y in rows.clone().rev() {
+            let (here, rest) = nearest.split_at_mut((y + 1 - rows.start) * width);
+            let here = &mut here[(y - rows.start) * width..];
+            let next =
+                if y + 1 < rows.end { &rest[..width] } else { &sites.below[columns.clone()] };
+            let distance = |row: u16| if row == NO_ROW { u16::MAX } else { row.abs_diff(y as u16) };
+            for gap in sites.gaps(y) {
+                for (own, &other) in here[gap.clone()].iter_mut().zip(&next[gap]) {
+                    *own = if distance(other) < distance(*own) { other } else { *own };
+                }
+            }
+        }
+    }
+
+    /// Calls `each` with every run of row `y`, of the band at hand, within some columns, from left to right, and
+    /// the index of its site. There is no run where there is no site. Only the sites in these columns count:
+    /// those of the row, or a gap with the sites beside it.
     pub fn runs(
-        &self,
+        &mut self,
         y: usize,
-        envelope: &mut Envelope,
-        mut each: impl FnMut(std::ops::Range<usize>, u32),
+        columns: Range<usize>,
+        mut each: impl FnMut(Range<usize>, u32),
     ) {
-        let sites = &self.column_sites[y * self.width..(y + 1) * self.width];
-        lower_envelope(sites, y as i32, &mut envelope.0);
-        let parabolas = &envelope.0;
-        for (i, parabola) in parabolas.iter().enumerate() {
-            let end = parabolas.get(i + 1).map_or(self.width as i32, |next| next.from);
+        let width = self.sites.width;
+        let rows = &self.nearest[(y - self.first) * width..][..width];
+        lower_envelope(rows, &columns, y as i32, &mut self.envelope);
+        for (i, parabola) in self.envelope.iter().enumerate() {
+            let end = self.envelope.get(i + 1).map_or(columns.end as i32, |next| next.from);
             let column = parabola.column as usize;
-            let site = u32::from(sites[column]) * self.width as u32 + column as u32;
+            let site = u32::from(rows[column]) * width as u32 + column as u32;
             each(parabola.from as usize..end as usize, site);
         }
     }
 }
 
 const NO_ROW: u16 = u16::MAX;
-
-/// For every pixel the row of the nearest site in its column.
-fn nearest_in_columns<F: Fn(usize) -> bool>(
-    width: usize,
-    height: usize,
-    row: impl Fn(usize) -> (std::ops::Range<usize>, F),
-) -> Vec<u16> {
-    let mut rows = Vec::with_capacity(width * height);
-    for y in 0..height {
-        if y == 0 {
-            rows.resize(width, NO_ROW);
-        } else {
-            rows.extend_from_within((y - 1) * width..y * width);
-        }
-        let (columns, is_site) = row(y);
-        let here = &mut rows[y * width..];
-        for x in columns {
-            here[x] = if is_site(x) { y as u16 } else { here[x] };
-        }
-    }
-    for y in (0..height.saturating_sub(1)).rev() {
-        let (here, below) = rows.split_at_mut((y + 1) * width);
-        let here = &mut here[y * width..];
-        for (own, &other) in here.iter_mut().zip(&below[..width]) {
-            let distance = |row: u16| if row == NO_ROW { u16::MAX } else { row.abs_diff(y as u16) };
-            *own = if distance(other) < distance(*own) { other } else { *own };
-        }
-    }
-    rows
-}
 
 /// One parabola of the lower envelope: its column, squared height, and where it begins to be least.
 #[derive(Debug)]
@@ -142,16 +224,15 @@ struct Parabola {
     from: i32,
 }
 
-fn lower_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>) {
-    let width = sites.len() as i32;
+fn lower_envelope(rows: &[u16], columns: &Range<usize>, y: i32, envelope: &mut Vec<Parabola>) {
+    let (first, end) = (columns.start as i32, columns.end as i32);
     envelope.clear();
-    for (x, &site) in sites.iter().enumerate() {
-        if site == NO_ROW {
+    for (column, &row) in (first..).zip(&rows[columns.clone()]) {
+        if row == NO_ROW {
             continue;
         }
-        let column = x as i32;
-        let height = (i32::from(site) - y).pow(2);
-        let mut from = 0;
+        let height = (i32::from(row) - y).pow(2);
+        let mut from = first;
         while let Some(last) = envelope.last() {
             // The last column where the older parabola is not above the newer one.
             let above = column * column - last.column * last.column + height - last.height;
@@ -162,10 +243,10 @@ fn lower_envelope(sites: &[u16], y: i32, envelope: &mut Vec<Parabola>) {
                 break;
             }
             envelope.pop();
-            from = 0;
+            from = first;
         }
-        if from < width {
-            envelope.push(Parabola { column, height, from: from.max(0) });
+        if from < end {
+            envelope.push(Parabola { column, height, from: from.max(first) });
         }
     }
 }
@@ -197,6 +278,30 @@ mod tests {
                 };
                 assert!(sites[site as usize]);
                 assert_eq!(squared(width, i, site as usize), least, "{width}×{height} at {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn in_a_gap_the_sites_beside_it_are_enough() {
+        let mut rng = Seed(6).stream(Stage::Tissue);
+        for share in [0.02, 0.6, 0.95] {
+            let (width, height) = (70, 2 * BAND + 9);
+            let picture: Vec<bool> = (0..width * height).map(|_| rng.unit() < share).collect();
+            let sites = NearestByRows::new(width, height, |i| picture[i]);
+            let all = nearest_sites(width, height, |i| picture[i]);
+            let mut reader = sites.reader();
+            for (band, y) in (0..3).flat_map(|band| sites.rows(band).map(move |y| (band, y))) {
+                reader.go_to(band);
+                for gap in sites.gaps(y) {
+                    assert!(gap.clone().all(|x| !picture[y * width + x]));
+                    let beside = gap.start.saturating_sub(1)..(gap.end + 1).min(width);
+                    reader.runs(y, beside, |run, site| {
+                        assert!(run.into_iter().all(|x| all[(x, y)] == site));
+                    });
+                }
+                let empty: usize = sites.gaps(y).map(|gap| gap.len()).sum();
+                assert_eq!(empty, (0..width).filter(|x| !picture[y * width + x]).count());
             }
         }
     }

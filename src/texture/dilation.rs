@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::side::SideMaps;
 use super::spans::Spans;
-use crate::raster::distance::{Envelope, NearestByRows};
+use crate::raster::distance::{BAND, NearestByRows, Reader, runs_of};
 
 /// Empty texels of one row, and where what fills them is found.
 #[derive(Debug, Clone, Copy)]
@@ -43,31 +43,40 @@ impl Empty {
     fn of(side: &SideMaps, spans: &Spans) -> Self {
         let size = side.size();
         let colours = &side.base_colour;
-        let nearest = NearestByRows::within(size, |y| {
+        let nearest = NearestByRows::of_rows(size, size, |y| {
             let row = colours.row(y);
-            (spans.row(y), move |x: usize| row[x][3] == u8::MAX)
+            runs_of(spans.row(y), |x| row[x][3] == u8::MAX)
         });
-        let of_row = |envelope: &mut Envelope, y: usize| {
+        let of_row = |reader: &mut Reader<'_>, y: usize| {
             let (row, span) = (colours.row(y), spans.row(y));
             let mut runs = Vec::new();
-            nearest.runs(y, envelope, |columns, source| {
-                let mut put = |gap: Range<usize>| {
-                    if !gap.is_empty() {
-                        runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
+            for bare in nearest.gaps(y) {
+                let beside = bare.start.saturating_sub(1)..(bare.end + 1).min(size);
+                reader.runs(y, beside, |columns, source| {
+                    let columns = columns.start.max(bare.start)..columns.end.min(bare.end);
+                    let mut put = |gap: Range<usize>| {
+                        if !gap.is_empty() {
+                            runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
+                        }
+                    };
+                    put(columns.start..columns.end.min(span.start));
+                    let mut rest = columns.start.max(span.start)..columns.end.min(span.end);
+                    while let Some(gap) = gap(row, rest.clone()) {
+                        rest.start = gap.end;
+                        put(gap);
                     }
-                };
-                put(columns.start..columns.end.min(span.start));
-                let mut rest = columns.start.max(span.start)..columns.end.min(span.end);
-                while let Some(gap) = gap(row, rest.clone()) {
-                    rest.start = gap.end;
-                    put(gap);
-                }
-                put(columns.start.max(span.end).max(span.start)..columns.end);
-            });
+                    put(columns.start.max(span.end).max(span.start)..columns.end);
+                });
+            }
             runs
         };
-        let rows: Vec<Vec<Run>> =
-            (0..size).into_par_iter().map_init(Envelope::default, of_row).collect();
+        let of_band = |reader: &mut Reader<'_>, band: usize| {
+            reader.go_to(band);
+            nearest.rows(band).map(|y| of_row(reader, y)).collect::<Vec<_>>()
+        };
+        let bands = (0..size.div_ceil(BAND)).into_par_iter();
+        let bands: Vec<Vec<Vec<Run>>> = bands.map_init(|| nearest.reader(), of_band).collect();
+        let rows = bands.concat();
         let starts = std::iter::once(0).chain(rows.iter().scan(0, |sum, row| {
             *sum += row.len();
             Some(*sum)

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Reach;
 use crate::raster::coverage::Capsule;
-use crate::raster::distance::{Envelope, NearestByRows};
+use crate::raster::distance::{BAND as ROWS, NearestByRows, Reader};
 use crate::texture::banded::Banded;
 use crate::texture::fields::BRANCH_FLARE;
 use crate::texture::pen::{Axis, BLOCK, Pen, block};
@@ -77,21 +77,25 @@ impl Lattice<'_> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![FAR_MM; side * side];
-        let fill = |envelope: &mut Envelope, ((y, row), wanted): Row<'_>| {
-            if wanted.is_empty() {
-                return;
-            }
-            near.sites.runs(y, envelope, |run, site| {
-                let line = near.line_at[site as usize] as usize;
-                let columns = run.start.max(wanted.start)..run.end.min(wanted.end);
-                let Some(distances) = row.get_mut(columns.clone()) else { return };
-                for (x, distance) in columns.zip(distances) {
-                    *distance = near.distance(line, x, y) * spacing;
+        let fill = |reader: &mut Reader<'_>, (band, nodes): (usize, &mut [f32])| {
+            reader.go_to(band);
+            for (y, row) in (band * ROWS..).zip(nodes.chunks_exact_mut(side)) {
+                let wanted = &columns[y];
+                if wanted.is_empty() {
+                    continue;
                 }
-            });
+                reader.runs(y, 0..side, |run, site| {
+                    let line = near.line_at[site as usize] as usize;
+                    let columns = run.start.max(wanted.start)..run.end.min(wanted.end);
+                    let Some(distances) = row.get_mut(columns.clone()) else { return };
+                    for (x, distance) in columns.zip(distances) {
+                        *distance = near.distance(line, x, y) * spacing;
+                    }
+                });
+            }
         };
-        let rows = distances.par_chunks_mut(side).enumerate().zip(columns);
-        rows.for_each_init(Envelope::default, fill);
+        let bands = distances.par_chunks_mut(ROWS * side).enumerate();
+        bands.for_each_init(|| near.sites.reader(), fill);
         distances
     }
 
@@ -106,7 +110,7 @@ impl Lattice<'_> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![-FAR_MM; side * side];
-        let fill = |envelope: &mut Envelope, (y, row): (usize, &mut [f32])| {
+        let fill_row = |reader: &mut Reader<'_>, y: usize, row: &mut [f32]| {
             let height = self.leaf(0, y).y;
             let mut crossings: Vec<f64> = outline
                 .iter()
@@ -115,7 +119,7 @@ impl Lattice<'_> {
                 .collect();
             crossings.sort_by(f64::total_cmp);
             let mut passed = 0;
-            near.sites.runs(y, envelope, |run, site| {
+            reader.runs(y, 0..side, |run, site| {
                 let line = near.line_at[site as usize] as usize;
                 let (sx, sy) = (site as usize % side, site as usize / side);
                 for x in run {
@@ -135,7 +139,14 @@ impl Lattice<'_> {
                 }
             });
         };
-        distances.par_chunks_mut(side).enumerate().for_each_init(Envelope::default, fill);
+        let fill = |reader: &mut Reader<'_>, (band, nodes): (usize, &mut [f32])| {
+            reader.go_to(band);
+            for (y, row) in (band * ROWS..).zip(nodes.chunks_exact_mut(side)) {
+                fill_row(reader, y, row);
+            }
+        };
+        let bands = distances.par_chunks_mut(ROWS * side).enumerate();
+        bands.for_each_init(|| near.sites.reader(), fill);
         distances
     }
 
@@ -252,9 +263,6 @@ impl pulp::WithSimd for Cones<'_> {
         }
     }
 }
-
-/// A row of distances with its number, and the columns of it that are asked for.
-type Row<'a> = ((usize, &'a mut [f32]), &'a Range<usize>);
 
 /// Which of some lines is near each node; lengths are in nodes.
 struct Near {

@@ -61,8 +61,12 @@ pub(super) const NODES_OF_WOUNDS: usize = 512;
 const SMOOTH_NODES: usize = 512;
 
 /// Colour that spreads from a vein further than so many nodes of the guide (the vein itself is a fifteenth
-/// of that wide) lies on the smooth lattice.
+/// of that wide) lies on the smooth lattice, where the crest of a narrower one would come and go between the
+/// nodes; a faint colour does so unseen.
 const WIDE_NODES: f32 = 16.0;
+
+/// Colour that spreads no further than this is never drawn on a lattice twice as coarse.
+const NARROW_NODES: f32 = 4.0;
 
 /// The coarse grids.
 #[derive(Debug)]
@@ -81,6 +85,8 @@ pub(super) struct Guide {
 #[derive(Debug)]
 pub(super) struct Reach<'a> {
     pub vein_spread: f64,
+    /// How much the colour from the veins counts, 0–1.
+    pub vein_strength: f32,
     /// Whether fine veins spread less colour than large ones.
     pub faint_veins: bool,
     pub speckles: &'a [DVec2],
@@ -89,8 +95,13 @@ pub(super) struct Reach<'a> {
 
 impl Reach<'_> {
     /// Nothing spreads.
-    pub(super) const NONE: Self =
-        Self { vein_spread: 0.0, faint_veins: false, speckles: &[], speckle_mm: 0.0 };
+    pub(super) const NONE: Self = Self {
+        vein_spread: 0.0,
+        vein_strength: 0.0,
+        faint_veins: false,
+        speckles: &[],
+        speckle_mm: 0.0,
+    };
 }
 
 impl Guide {
@@ -126,7 +137,8 @@ impl Guide {
         });
         let spans: Vec<Range<usize>> = spans.collect();
         // A vein reaches half as many nodes of a lattice with half as many.
-        let wide = WIDE_NODES * coarse.side as f32 / side as f32;
+        let wide_nodes = (WIDE_NODES * reach.vein_strength).max(NARROW_NODES);
+        let wide = wide_nodes * coarse.side as f32 / side as f32;
         let smooth = SmoothFields {
             side: coarse.side,
             major: coarse.distances(&major, &spans),
@@ -137,7 +149,7 @@ impl Guide {
         };
         let fine_spans = smooth.spans_at(side);
         let distances = lattice.distances(&veins, &fine_spans);
-        let from_narrow = lattice.vein_weights(venation, reach, 0.0..WIDE_NODES);
+        let from_narrow = lattice.vein_weights(venation, reach, 0.0..wide_nodes);
         let fine = distances.into_iter().zip(from_narrow).map(|(vein, narrow)| [vein, narrow]);
         let even = coarse.spacing() <= NOISE_NODES_MM;
         let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);

@@ -98,10 +98,12 @@ impl Scene {
         let per_mm = frame.pixels_per_mm(size);
         let tissue = seed.stream(Stage::Tissue).bits() as u32;
         let speckles = speckles(paint, margin, seed);
+        let from_veins = paint.colour.r#type == ColourType::FromVeins;
         let reach = Reach {
             vein_spread: paint.colour.vein_spread,
+            vein_strength: if from_veins { 1.0 } else { paint.colour.undertone as f32 },
             // Else a net leaves nothing of the first colour.
-            faint_veins: paint.colour.r#type == ColourType::FromVeins,
+            faint_veins: from_veins,
             speckles: &speckles,
             speckle_mm: paint.colour.spread_mm,
         };

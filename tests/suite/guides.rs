@@ -3,7 +3,7 @@
 use venation::growth::{GrowingBlade, GrowthType};
 use venation::margin::{self, LandmarkKind};
 use venation::observer::Silent;
-use venation::presets::{self, PRESETS};
+use venation::presets::{self, PRESETS, Preset};
 use venation::seed::Seed;
 use venation::spec::LeafSpec;
 use venation::veins::guides::SecondaryType;
@@ -16,31 +16,47 @@ fn grown(spec: &LeafSpec, seed: u64) -> (GrowingBlade, Venation) {
     (blade, venation)
 }
 
+/// A preset's leaf of one growth type is whole, and `twice` the same.
+fn keeps_its_promises(preset: &Preset, growth: GrowthType, seed: u64, twice: bool) {
+    let document = preset.document().expect("it parses");
+    let mut spec = document.resolve(Seed(seed)).expect("it resolves");
+    spec.growth.r#type = growth;
+    spec.veins.spawn_rate = 40.0;
+    if growth == GrowthType::Marginal {
+        spec.growth.scale = 0.8;
+    }
+    let name = format!("{} {growth} {seed}", preset.name);
+    let (blade, venation) = grown(&spec, seed);
+    assert_eq!(venation.check(blade.finished()), None, "{name}");
+    if twice {
+        let (_, again) = grown(&spec, seed);
+        assert_eq!(venation, again, "{name}");
+    }
+    let longest = 1.5 * 1.2 * spec.veins.node_step_mm;
+    let at = |node: NodeId| venation.graph().positions()[node as usize];
+    for (a, b) in venation.graph().edges() {
+        let length = at(a).distance(at(b));
+        assert!(length <= longest, "{name}: {length} of {longest} at {}", at(b));
+    }
+}
+
 #[test]
 fn presets_keep_what_venation_promises_whatever_the_growth() {
+    // Two types each, every type with eight presets at least; all with all are for --ignored.
+    let types = GrowthType::ALL;
     for (index, preset) in PRESETS.iter().enumerate() {
-        for (seed, &growth) in GrowthType::ALL.iter().enumerate() {
-            let seed = seed as u64;
-            let document = preset.document().expect("it parses");
-            let mut spec = document.resolve(Seed(seed)).expect("it resolves");
-            spec.growth.r#type = growth;
-            spec.veins.spawn_rate = 40.0;
-            if growth == GrowthType::Marginal {
-                spec.growth.scale = 0.8;
-            }
-            let name = format!("{} {growth} {seed}", preset.name);
-            let (blade, venation) = grown(&spec, seed);
-            assert_eq!(venation.check(blade.finished()), None, "{name}");
-            if index % GrowthType::ALL.len() == seed as usize {
-                let (_, again) = grown(&spec, seed);
-                assert_eq!(venation, again, "{name}");
-            }
-            let longest = 1.5 * 1.2 * spec.veins.node_step_mm;
-            let at = |node: NodeId| venation.graph().positions()[node as usize];
-            for (a, b) in venation.graph().edges() {
-                let length = at(a).distance(at(b));
-                assert!(length <= longest, "{name}: {length} of {longest} at {}", at(b));
-            }
+        for (seed, twice) in [(index % types.len(), true), ((index + 2) % types.len(), false)] {
+            keeps_its_promises(preset, types[seed], seed as u64, twice);
+        }
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: run with --ignored"]
+fn presets_keep_what_venation_promises_in_every_growth() {
+    for preset in PRESETS {
+        for (seed, &growth) in (0..).zip(GrowthType::ALL) {
+            keeps_its_promises(preset, growth, seed, false);
         }
     }
 }

@@ -5,8 +5,8 @@
 //!
 //! A texel takes 19 bytes a side when every map of the default set is kept, so 8192² with both sides
 //! needs 2.6 GB, and 540 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
-//! rest is small beside it: 2 bytes a texel while the leaf is spread over the empty ones, and of a leaf
-//! with wounds 13 while crumbs are looked for.
+//! rest is small beside it, but for the 13 bytes a texel of a leaf with wounds while crumbs are looked
+//! for.
 
 pub mod atlas;
 mod band;

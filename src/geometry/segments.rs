@@ -92,29 +92,19 @@ impl SegmentIndex {
         }
     }
 
-    /// In two sweeps over the rows: a way of king's moves goes through a neighbour that one of them has passed
-    /// before.
+    /// In two sweeps over the rows, down and up: every way of a king goes on in one of them.
     fn measure_emptiness(&mut self) {
-        let (columns, rows) = (self.columns, self.rows);
-        let far = columns.max(rows) as u16;
-        self.away = (0..columns * rows)
-            .map(|i| if self.starts[i] == self.starts[i + 1] { far } else { 0 })
-            .collect();
-        let mut sweep = |i: usize, row: Option<usize>, beside: Option<usize>| {
-            let column = i % columns;
-            let around = column.saturating_sub(1)..(column + 2).min(columns);
-            let others =
-                row.into_iter().flat_map(|row| around.clone().map(move |x| row * columns + x));
-            let least = others.chain(beside).map(|other| self.away[other]).min().unwrap_or(far);
-            self.away[i] = self.away[i].min(least + 1);
-        };
-        for i in 0..columns * rows {
-            let (row, column) = (i / columns, i % columns);
-            sweep(i, row.checked_sub(1), (column > 0).then(|| i - 1));
+        let columns = self.columns;
+        let far = columns.max(self.rows) as u16;
+        let of_cell = |run: &[u32]| if run[0] == run[1] { far } else { 0 };
+        self.away = self.starts.windows(2).map(of_cell).collect();
+        for row in 0..self.rows {
+            let (above, rest) = self.away.split_at_mut(row * columns);
+            spread(&above[above.len().saturating_sub(columns)..], &mut rest[..columns]);
         }
-        for i in (0..columns * rows).rev() {
-            let (row, column) = (i / columns, i % columns);
-            sweep(i, (row + 1 < rows).then_some(row + 1), (column + 1 < columns).then_some(i + 1));
+        for row in (0..self.rows).rev() {
+            let (rest, below) = self.away.split_at_mut((row + 1) * columns);
+            spread(&below[..below.len().min(columns)], &mut rest[row * columns..]);
         }
     }
 
@@ -242,6 +232,25 @@ impl SegmentIndex {
             });
         }
         (best.1 != usize::MAX).then_some(best)
+    }
+}
+
+/// Takes the distances of the cells of a row no farther than a king goes from the row before, if there is one,
+/// and along the row.
+fn spread(before: &[u16], row: &mut [u16]) {
+    let nearer = |cells: &mut [u16], from: &[u16]| {
+        cells.iter_mut().zip(from).for_each(|(own, from)| *own = (*own).min(from + 1));
+    };
+    if let [_, beyond @ ..] = before {
+        nearer(row, before);
+        nearer(row, beyond);
+        nearer(&mut row[1..], before);
+    }
+    for x in 1..row.len() {
+        row[x] = row[x].min(row[x - 1] + 1);
+    }
+    for x in (1..row.len()).rev() {
+        row[x - 1] = row[x - 1].min(row[x] + 1);
     }
 }
 

@@ -6,6 +6,7 @@
 //! one is that is not, so that a query far from all of them looks at few cells, too.
 
 use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
+use super::rings::Size;
 use super::{DVec2, Rect};
 
 /// An index over segments a–b.
@@ -201,34 +202,6 @@ impl SegmentIndex {
         inside
     }
 
-    /// Calls `visit` with the segments in the cells that lie `ring` cells from one, by the greater of both ways,
-    /// some more than once; it goes past empty cells in strides.
-    fn for_each_in_ring(
-        &self,
-        (column, row): (usize, usize),
-        ring: usize,
-        mut visit: impl FnMut(u32),
-    ) {
-        let (left, right) = (column.saturating_sub(ring), (column + ring).min(self.columns - 1));
-        let (low, high) = (row.saturating_sub(ring), (row + ring).min(self.rows - 1));
-        let mut walk = |mut at: usize, last: usize, step: usize| {
-            while at <= last {
-                let items = self.starts[at] as usize..self.starts[at + 1] as usize;
-                self.items[items].iter().for_each(|&i| visit(i));
-                at += step * usize::from(self.away[at]).max(1);
-            }
-        };
-        let cell = |x: usize, y: usize| y * self.columns + x;
-        let below = Some(row + ring).filter(|&y| y < self.rows);
-        for y in [row.checked_sub(ring), below].into_iter().flatten() {
-            walk(cell(left, y), cell(right, y), 1);
-        }
-        let beyond = Some(column + ring).filter(|&x| x < self.columns);
-        for x in [column.checked_sub(ring), beyond].into_iter().flatten() {
-            walk(cell(x, low), cell(x, high), self.columns);
-        }
-    }
-
     /// The squared distance from `p` to the nearest segment and that segment, when within `reach`.
     #[must_use]
     pub fn nearest(&self, p: DVec2, reach: f64) -> Option<(f64, usize)> {
@@ -237,21 +210,24 @@ impl SegmentIndex {
         let centre = ((p - self.min) * self.per_cell)
             .clamp(DVec2::ZERO, DVec2::new(self.columns as f64 - 1.0, self.rows as f64 - 1.0));
         let home = (centre.x as usize, centre.y as usize);
+        let size = Size { columns: self.columns, rows: self.rows };
         let outside = p.distance(p.clamp(
             self.min,
             self.min + DVec2::new(self.columns as f64, self.rows as f64) / self.per_cell,
         ));
         let empty = usize::from(self.away[home.1 * self.columns + home.0]);
-        for ring in empty..self.columns.max(self.rows) {
+        for ring in empty..size.last_ring() {
             let clear = (ring.saturating_sub(1) as f64 / self.per_cell).max(outside);
             if clear * clear > best.0 {
                 break;
             }
-            self.for_each_in_ring(home, ring, |i| {
-                let (a, b) = self.segments[i as usize];
-                let d2 = p.distance_squared(nearest_on_segment(a, b, p));
-                if (d2, i as usize) < best {
-                    best = (d2, i as usize);
+            size.for_each_in_ring(home, ring, |column, row| {
+                for &i in self.cell(column, row) {
+                    let (a, b) = self.segments[i as usize];
+                    let d2 = p.distance_squared(nearest_on_segment(a, b, p));
+                    if (d2, i as usize) < best {
+                        best = (d2, i as usize);
+                    }
                 }
             });
         }

@@ -237,13 +237,12 @@ fn evergreen_leaves_stay_green_until_they_die() {
 
 #[test]
 fn sixteen_bits_are_more_than_eight_and_agree_with_them() {
-    let margin = sample_leaf::ovate(60.0);
-    let veins = sample_leaf::veins(&margin);
+    let (margin, veins) = sample_leaf::veined();
     let settings = Settings::of_size(96);
     let mut deep = settings.as_paint();
     deep.maps = deep.maps.deep();
-    let deep = paint(&deep, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
-    let plain = settings.painted(&margin, &veins);
+    let deep = paint(&deep, margin, veins, Seed(3), &mut Silent).expect("a leaf");
+    let plain = settings.painted(margin, veins);
     for (deep, plain) in [(&deep.front, &plain.front), (&deep.back, &plain.back)] {
         for map in [
             MapKind::BaseColour,

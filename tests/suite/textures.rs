@@ -74,14 +74,13 @@ fn every_guarantee_holds_on_a_sample_leaf() {
 
 #[test]
 fn each_map_can_be_had_alone_and_is_the_same() {
-    let margin = sample_leaf::ovate(60.0);
-    let veins = sample_leaf::veins(&margin);
+    let (margin, veins) = sample_leaf::veined();
     let settings = Settings::of_size(64);
-    let all = settings.painted(&margin, &veins);
+    let all = settings.painted(margin, veins);
     for &map in MapKind::ALL {
         let mut alone = settings.as_paint();
         alone.maps = MapSet::of(&[map]);
-        let set = paint(&alone, &margin, &veins, Seed(3), &mut Silent).expect("a leaf");
+        let set = paint(&alone, margin, veins, Seed(3), &mut Silent).expect("a leaf");
         assert_eq!(set.check(), None, "{map}");
         for (alone, all) in [(&set.front, &all.front), (&set.back, &all.back)] {
             let (width, height) = alone.dimensions(map);
@@ -234,11 +233,10 @@ fn colour_of(hue: f32, value: f32) -> palette::Hsv {
 
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
-    let margin = sample_leaf::ovate(60.0);
-    let veins = sample_leaf::veins(&margin);
+    let (margin, veins) = sample_leaf::veined();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| Settings::of_size(200).painted(&margin, &veins))
+        pool.install(|| Settings::of_size(200).painted(margin, veins))
     };
     assert!(on(1) == on(4));
 }

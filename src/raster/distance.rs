@@ -28,19 +28,14 @@ pub fn nearest_sites(
 ) -> Grid<u32> {
     let sites = NearestByRows::new(width, height, is_site);
     let mut nearest = Grid::filled(width, height, NO_SITE);
-    let fill = |reader: &mut Reader<'_>, (band, pixels): (usize, &mut [u32])| {
-        reader.go_to(band);
-        for (y, row) in (band * BAND..).zip(pixels.chunks_mut(width)) {
-            reader.runs(y, 0..width, |run, site| row[run].fill(site));
-        }
-    };
-    let bands = nearest.values_mut().par_chunks_mut((BAND * width).max(1)).enumerate();
-    bands.for_each_init(|| sites.reader(), fill);
+    sites.for_each_row(nearest.values_mut(), |row, pixels| {
+        row.runs(0..width, |run, site| pixels[run].fill(site));
+    });
     nearest
 }
 
 /// Rows of which the nearest sites are worked out together.
-pub const BAND: usize = 32;
+const BAND: usize = 32;
 
 /// The nearest sites as runs of pixels of a row that have one in common: for pictures of which only
 /// some pixels are asked for, and which would be large if written down.
@@ -119,13 +114,36 @@ impl NearestByRows {
         &self.sites[self.firsts[y]..self.firsts[y + 1]]
     }
 
+    /// Calls `each` with every row and as many values for it as for the others, on all threads.
+    ///
+    /// # Panics
+    ///
+    /// Unless the values can be dealt out to the rows.
+    pub fn for_each_row<T: Send>(
+        &self,
+        values: &mut [T],
+        each: impl Fn(&mut Row<'_, '_>, &mut [T]) + Sync,
+    ) {
+        let height = self.firsts.len() - 1;
+        let in_row = values.len() / height.max(1);
+        assert_eq!(in_row * height, values.len(), "as many values for every row");
+        let fill = |reader: &mut Reader<'_>, (band, values): (usize, &mut [T])| {
+            reader.go_to(band);
+            for (y, values) in self.rows(band).zip(values.chunks_mut(in_row)) {
+                each(&mut Row { y, reader }, values);
+            }
+        };
+        let bands = values.par_chunks_mut((BAND * in_row).max(1)).enumerate();
+        bands.for_each_init(|| self.reader(), fill);
+    }
+
     /// The rows of a band.
-    pub fn rows(&self, band: usize) -> Range<usize> {
+    fn rows(&self, band: usize) -> Range<usize> {
         band * BAND..((band + 1) * BAND).min(self.firsts.len() - 1)
     }
 
     /// What lies between the sites of a row, from left to right.
-    pub fn gaps(&self, y: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+    fn gaps(&self, y: usize) -> impl Iterator<Item = Range<usize>> + '_ {
         let sites = self.sites_of(y);
         let starts = std::iter::once(0).chain(sites.iter().map(|run| usize::from(run.end)));
         let ends = sites.iter().map(|run| usize::from(run.start)).chain([self.width]);
@@ -133,8 +151,7 @@ impl NearestByRows {
     }
 
     /// Reads them; each thread has its own.
-    #[must_use]
-    pub fn reader(&self) -> Reader<'_> {
+    fn reader(&self) -> Reader<'_> {
         Reader { sites: self, first: 0, nearest: Vec::new(), envelope: Vec::new() }
     }
 }
@@ -153,9 +170,36 @@ pub fn runs_of(columns: Range<usize>, is_site: impl Fn(usize) -> bool) -> Vec<Ra
     runs
 }
 
+/// The sites nearest to the pixels of a row.
+#[derive(Debug)]
+pub struct Row<'a, 'b> {
+    y: usize,
+    reader: &'b mut Reader<'a>,
+}
+
+impl<'a> Row<'a, '_> {
+    /// Its number.
+    #[must_use]
+    pub fn y(&self) -> usize {
+        self.y
+    }
+
+    /// What lies between its sites, from left to right.
+    pub fn gaps(&self) -> impl Iterator<Item = Range<usize>> + use<'a> {
+        self.reader.sites.gaps(self.y)
+    }
+
+    /// Calls `each` with every run of pixels within some columns, from left to right, and the index of its
+    /// site. There is no run where there is no site. Only the sites in these columns count: those of the
+    /// row, or a gap with the sites beside it.
+    pub fn runs(&mut self, columns: Range<usize>, each: impl FnMut(Range<usize>, u32)) {
+        self.reader.runs(self.y, columns, each);
+    }
+}
+
 /// Reads the nearest sites, a band of rows at a time.
 #[derive(Debug)]
-pub struct Reader<'a> {
+struct Reader<'a> {
     sites: &'a NearestByRows,
     first: usize,
     /// For every pixel of the band the row of the nearest site in its column.
@@ -165,7 +209,7 @@ pub struct Reader<'a> {
 
 impl Reader<'_> {
     /// Makes the rows of a band ready.
-    pub fn go_to(&mut self, band: usize) {
+    fn go_to(&mut self, band: usize) {
         let Self { sites, first, nearest, .. } = self;
         let (width, rows) = (sites.width, sites.rows(band));
         let columns = band * width..(band + 1) * width;
@@ -193,15 +237,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Calls `each` with every run of row `y`, of the band at hand, within some columns, from left to right, and
-    /// the index of its site. There is no run where there is no site. Only the sites in these columns count:
-    /// those of the row, or a gap with the sites beside it.
-    pub fn runs(
-        &mut self,
-        y: usize,
-        columns: Range<usize>,
-        mut each: impl FnMut(Range<usize>, u32),
-    ) {
+    /// The runs of row `y`, of the band at hand; see [`Row::runs`].
+    fn runs(&mut self, y: usize, columns: Range<usize>, mut each: impl FnMut(Range<usize>, u32)) {
         let width = self.sites.width;
         let rows = &self.nearest[(y - self.first) * width..][..width];
         lower_envelope(rows, &columns, y as i32, &mut self.envelope);
@@ -290,19 +327,18 @@ mod tests {
             let picture: Vec<bool> = (0..width * height).map(|_| rng.unit() < share).collect();
             let sites = NearestByRows::new(width, height, |i| picture[i]);
             let all = nearest_sites(width, height, |i| picture[i]);
-            let mut reader = sites.reader();
-            for (band, y) in (0..3).flat_map(|band| sites.rows(band).map(move |y| (band, y))) {
-                reader.go_to(band);
-                for gap in sites.gaps(y) {
+            sites.for_each_row(&mut vec![(); height], |row, _| {
+                let (y, mut empty) = (row.y(), 0);
+                for gap in row.gaps() {
                     assert!(gap.clone().all(|x| !picture[y * width + x]));
+                    empty += gap.len();
                     let beside = gap.start.saturating_sub(1)..(gap.end + 1).min(width);
-                    reader.runs(y, beside, |run, site| {
+                    row.runs(beside, |run, site| {
                         assert!(run.into_iter().all(|x| all[(x, y)] == site));
                     });
                 }
-                let empty: usize = sites.gaps(y).map(|gap| gap.len()).sum();
                 assert_eq!(empty, (0..width).filter(|x| !picture[y * width + x]).count());
-            }
+            });
         }
     }
 

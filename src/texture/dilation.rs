@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::side::SideMaps;
 use super::spans::Spans;
-use crate::raster::distance::{BAND, NearestByRows, Reader, runs_of};
+use crate::raster::distance::{NearestByRows, runs_of};
 
 /// Empty texels of one row, and where what fills them is found.
 #[derive(Debug, Clone, Copy)]
@@ -47,12 +47,13 @@ impl Empty {
             let row = colours.row(y);
             runs_of(spans.row(y), |x| row[x][3] == u8::MAX)
         });
-        let of_row = |reader: &mut Reader<'_>, y: usize| {
-            let (row, span) = (colours.row(y), spans.row(y));
-            let mut runs = Vec::new();
-            for bare in nearest.gaps(y) {
+        let mut rows = vec![Vec::new(); size];
+        nearest.for_each_row(&mut rows, |nearest, found| {
+            let (row, span) = (colours.row(nearest.y()), spans.row(nearest.y()));
+            let runs = &mut found[0];
+            for bare in nearest.gaps() {
                 let beside = bare.start.saturating_sub(1)..(bare.end + 1).min(size);
-                reader.runs(y, beside, |columns, source| {
+                nearest.runs(beside, |columns, source| {
                     let columns = columns.start.max(bare.start)..columns.end.min(bare.end);
                     let mut put = |gap: Range<usize>| {
                         if !gap.is_empty() {
@@ -68,15 +69,7 @@ impl Empty {
                     put(columns.start.max(span.end).max(span.start)..columns.end);
                 });
             }
-            runs
-        };
-        let of_band = |reader: &mut Reader<'_>, band: usize| {
-            reader.go_to(band);
-            nearest.rows(band).map(|y| of_row(reader, y)).collect::<Vec<_>>()
-        };
-        let bands = (0..size.div_ceil(BAND)).into_par_iter();
-        let bands: Vec<Vec<Vec<Run>>> = bands.map_init(|| nearest.reader(), of_band).collect();
-        let rows = bands.concat();
+        });
         let starts = std::iter::once(0).chain(rows.iter().scan(0, |sum, row| {
             *sum += row.len();
             Some(*sum)

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Reach;
 use crate::raster::coverage::Capsule;
-use crate::raster::distance::{BAND as ROWS, NearestByRows, Reader};
+use crate::raster::distance::NearestByRows;
 use crate::texture::banded::Banded;
 use crate::texture::fields::BRANCH_FLARE;
 use crate::texture::pen::{Axis, BLOCK, Pen, block};
@@ -77,25 +77,21 @@ impl Lattice<'_> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![FAR_MM; side * side];
-        let fill = |reader: &mut Reader<'_>, (band, nodes): (usize, &mut [f32])| {
-            reader.go_to(band);
-            for (y, row) in (band * ROWS..).zip(nodes.chunks_exact_mut(side)) {
-                let wanted = &columns[y];
-                if wanted.is_empty() {
-                    continue;
-                }
-                reader.runs(y, 0..side, |run, site| {
-                    let line = near.line_at[site as usize] as usize;
-                    let columns = run.start.max(wanted.start)..run.end.min(wanted.end);
-                    let Some(distances) = row.get_mut(columns.clone()) else { return };
-                    for (x, distance) in columns.zip(distances) {
-                        *distance = near.distance(line, x, y) * spacing;
-                    }
-                });
+        near.sites.for_each_row(&mut distances, |nearest, row| {
+            let y = nearest.y();
+            let wanted = &columns[y];
+            if wanted.is_empty() {
+                return;
             }
-        };
-        let bands = distances.par_chunks_mut(ROWS * side).enumerate();
-        bands.for_each_init(|| near.sites.reader(), fill);
+            nearest.runs(0..side, |run, site| {
+                let line = near.line_at[site as usize] as usize;
+                let columns = run.start.max(wanted.start)..run.end.min(wanted.end);
+                let Some(distances) = row.get_mut(columns.clone()) else { return };
+                for (x, distance) in columns.zip(distances) {
+                    *distance = near.distance(line, x, y) * spacing;
+                }
+            });
+        });
         distances
     }
 
@@ -110,7 +106,8 @@ impl Lattice<'_> {
         let near = Near::new(self, lines);
         let (side, spacing) = (self.side, self.spacing() as f32);
         let mut distances = vec![-FAR_MM; side * side];
-        let fill_row = |reader: &mut Reader<'_>, y: usize, row: &mut [f32]| {
+        near.sites.for_each_row(&mut distances, |nearest, row| {
+            let y = nearest.y();
             let height = self.leaf(0, y).y;
             let mut crossings: Vec<f64> = outline
                 .iter()
@@ -119,7 +116,7 @@ impl Lattice<'_> {
                 .collect();
             crossings.sort_by(f64::total_cmp);
             let mut passed = 0;
-            reader.runs(y, 0..side, |run, site| {
+            nearest.runs(0..side, |run, site| {
                 let line = near.line_at[site as usize] as usize;
                 let (sx, sy) = (site as usize % side, site as usize / side);
                 for x in run {
@@ -138,15 +135,7 @@ impl Lattice<'_> {
                     };
                 }
             });
-        };
-        let fill = |reader: &mut Reader<'_>, (band, nodes): (usize, &mut [f32])| {
-            reader.go_to(band);
-            for (y, row) in (band * ROWS..).zip(nodes.chunks_exact_mut(side)) {
-                fill_row(reader, y, row);
-            }
-        };
-        let bands = distances.par_chunks_mut(ROWS * side).enumerate();
-        bands.for_each_init(|| near.sites.reader(), fill);
+        });
         distances
     }
 

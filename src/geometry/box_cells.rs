@@ -21,6 +21,7 @@ struct Item {
 }
 
 impl Item {
+    #[inline]
     fn meets(&self, other: &Self) -> bool {
         (self.low[0] <= other.high[0])
             & (self.high[0] >= other.low[0])
@@ -67,7 +68,7 @@ impl BoxCells {
         // Counts, then ends, which filling from the back turns into starts.
         let mut starts = vec![0u32; self.columns * self.rows + 1];
         for rect in boxes.clone() {
-            self.cells_of(self.item(rect, 0)).for_each(|cell| starts[cell] += 1);
+            self.for_each_cell(self.item(rect, 0), |cell| starts[cell] += 1);
         }
         let mut end = 0;
         for start in &mut starts {
@@ -77,33 +78,39 @@ impl BoxCells {
         let mut items = vec![Item::default(); end as usize];
         for (id, rect) in (0..).zip(boxes) {
             let item = self.item(rect, id);
-            for cell in self.cells_of(item) {
+            self.for_each_cell(item, |cell| {
                 let place = &mut starts[cell];
                 *place -= 1;
                 items[*place as usize] = item;
-            }
+            });
         }
         (self.starts, self.items) = (starts, items);
     }
 
+    #[inline]
     fn item(&self, rect: Rect, id: u32) -> Item {
         let (low, high) = (rect.min - self.min - self.slack, rect.max - self.min + self.slack);
         Item { low: [low.x as f32, low.y as f32], high: [high.x as f32, high.y as f32], id }
     }
 
+    #[inline]
     fn column(&self, x: f32) -> usize {
         ((x * self.per_cell).max(0.0) as usize).min(self.columns - 1)
     }
 
+    #[inline]
     fn row(&self, y: f32) -> usize {
         ((y * self.per_cell).max(0.0) as usize).min(self.rows - 1)
     }
 
-    fn cells_of(&self, Item { low, high, .. }: Item) -> impl Iterator<Item = usize> + use<> {
+    /// The cells that a box touches.
+    fn for_each_cell(&self, Item { low, high, .. }: Item, mut each: impl FnMut(usize)) {
         let (left, right) = (self.column(low[0]), self.column(high[0]));
-        let columns = self.columns;
-        (self.row(low[1])..=self.row(high[1]))
-            .flat_map(move |row| (left..=right).map(move |column| row * columns + column))
+        for row in self.row(low[1])..=self.row(high[1]) {
+            for column in left..=right {
+                each(row * self.columns + column);
+            }
+        }
     }
 
     /// Calls `visit` once with every two boxes that meet, and with some that nearly do.

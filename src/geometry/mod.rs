@@ -47,6 +47,20 @@ impl Rect {
             .fold(empty, |rect, p| Self { min: rect.min.min(p), max: rect.max.max(p) })
     }
 
+    /// The smallest box around two points.
+    #[inline]
+    #[must_use]
+    pub fn between(a: DVec2, b: DVec2) -> Self {
+        Self { min: a.min(b), max: a.max(b) }
+    }
+
+    /// The smallest box around two.
+    #[inline]
+    #[must_use]
+    pub fn joined(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     /// Width and height.
     #[must_use]
     pub fn size(&self) -> DVec2 {
@@ -54,6 +68,7 @@ impl Rect {
     }
 
     /// Whether the two have a point in common, their borders included.
+    #[inline]
     #[must_use]
     pub fn meets(&self, other: Self) -> bool {
         // Without branches: asked of all that is near.
@@ -74,6 +89,7 @@ impl Rect {
     }
 
     /// The same, larger by `by` on every side.
+    #[inline]
     #[must_use]
     pub fn grown(&self, by: f64) -> Self {
         Self { min: self.min - DVec2::splat(by), max: self.max + DVec2::splat(by) }

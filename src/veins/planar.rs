@@ -6,6 +6,7 @@ use super::graph::{NodeId, VeinGraph};
 use crate::geometry::Rect;
 use crate::geometry::box_cells::BoxCells;
 use crate::geometry::polygon::{nearest_on_segment, segments_near};
+use crate::geometry::segments::SegmentIndex;
 
 /// Veins that do not meet keep this far apart (mm): files hold millionths of a millimetre, in which what is
 /// nearer may cross. Far below what can be seen.
@@ -25,13 +26,19 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn new(ends: [NodeId; 2], positions: &[DVec2]) -> Self {
-        let [from, to] = ends.map(|node| positions[node as usize]);
-        Self { ends, from, to, around: Rect::around([from, to]).grown(CLEARANCE_MM / 2.0) }
+        let (from, to) = (positions[ends[0] as usize], positions[ends[1] as usize]);
+        Self { ends, from, to, around: Rect::between(from, to).grown(CLEARANCE_MM / 2.0) }
     }
 
     /// What may be in its way meets this box.
+    #[inline]
     pub(super) fn around(&self) -> Rect {
         self.around
+    }
+
+    /// Whether it touches a segment.
+    pub(super) fn touches(&self, segments: &SegmentIndex) -> bool {
+        segments.touches(self.from, self.to)
     }
 
     /// Whether two edges touch, all but touch, or come too close where they share a node.

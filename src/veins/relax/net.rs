@@ -85,6 +85,7 @@ impl Net {
         self.numbers.iter().map(|&number| self.positions[number as usize]).collect()
     }
 
+    #[inline]
     pub(super) fn place(&self, node: NodeId) -> DVec2 {
         self.positions[node as usize]
     }

@@ -5,6 +5,8 @@
 //! mean segment wide, so a query near few segments looks at few. An empty cell knows how far the next
 //! one is that is not, so that a query far from all of them looks at few cells, too.
 
+use std::sync::OnceLock;
+
 use super::polygon::{crosses_ray, nearest_on_segment, segments_touch};
 use super::rings::Size;
 use super::{DVec2, Rect};
@@ -21,13 +23,17 @@ pub struct SegmentIndex {
     starts: Vec<u32>,
     items: Vec<u32>,
     /// From each cell the number of columns or rows, whichever is more, to the nearest that is not empty.
-    away: Vec<u16>,
-    /// For each cell that no segment comes into, whether it lies inside the polygon they make.
-    inside: Vec<bool>,
+    /// Worked out when first asked for: a margin's own edges, among which none is long, do without.
+    away: OnceLock<Vec<u16>>,
+    /// For each cell that no segment comes into, whether it lies inside the polygon they make. Likewise.
+    inside: OnceLock<Vec<bool>>,
 }
 
 /// More cells than this buy nothing and cost memory.
 const MAX_CELLS_A_SIDE: f64 = 512.0;
+
+/// Along fewer cells than this each is looked at, unless it is known already which are empty.
+const FEW_CELLS: usize = 12;
 
 impl SegmentIndex {
     /// Over the edges of a closed polygon; segment `i` runs from vertex `i` to the next.
@@ -56,12 +62,10 @@ impl SegmentIndex {
             rows,
             starts: vec![0; columns * rows + 1],
             items: Vec::new(),
-            away: Vec::new(),
-            inside: Vec::new(),
+            away: OnceLock::new(),
+            inside: OnceLock::new(),
         };
         index.fill();
-        index.measure_emptiness();
-        index.find_inside();
         index
     }
 
@@ -92,20 +96,25 @@ impl SegmentIndex {
         }
     }
 
+    fn away(&self) -> &[u16] {
+        self.away.get_or_init(|| self.measured_emptiness())
+    }
+
     /// In two sweeps over the rows, down and up: every way of a king goes on in one of them.
-    fn measure_emptiness(&mut self) {
+    fn measured_emptiness(&self) -> Vec<u16> {
         let columns = self.columns;
         let far = columns.max(self.rows) as u16;
         let of_cell = |run: &[u32]| if run[0] == run[1] { far } else { 0 };
-        self.away = self.starts.windows(2).map(of_cell).collect();
+        let mut away: Vec<u16> = self.starts.windows(2).map(of_cell).collect();
         for row in 0..self.rows {
-            let (above, rest) = self.away.split_at_mut(row * columns);
+            let (above, rest) = away.split_at_mut(row * columns);
             spread(&above[above.len().saturating_sub(columns)..], &mut rest[..columns]);
         }
         for row in (0..self.rows).rev() {
-            let (rest, below) = self.away.split_at_mut((row + 1) * columns);
+            let (rest, below) = away.split_at_mut((row + 1) * columns);
             spread(&below[..below.len().min(columns)], &mut rest[row * columns..]);
         }
+        away
     }
 
     /// The cells that a box touches, clamped to the grid.
@@ -129,8 +138,12 @@ impl SegmentIndex {
     /// some more than once.
     pub fn any_near(&self, a: DVec2, b: DVec2, mut test: impl FnMut(usize) -> bool) -> bool {
         let (x0, y0, x1, y1) = self.cells(a.min(b), a.max(b));
-        let away = |x: usize, y: usize| usize::from(self.away[y * self.columns + x]);
-        if away(x0, y0) > (x1 - x0).max(y1 - y0) {
+        let widest = (x1 - x0).max(y1 - y0);
+        let known = self.away.get().map(Vec::as_slice).unwrap_or_default();
+        let known = if widest < FEW_CELLS { known } else { self.away() };
+        let away =
+            |x: usize, y: usize| known.get(y * self.columns + x).map_or(0, |&n| usize::from(n));
+        if away(x0, y0) > widest {
             return false;
         }
         (y0..=y1).any(|y| {
@@ -154,9 +167,9 @@ impl SegmentIndex {
         })
     }
 
-    /// Finds out which of the empty cells lie inside. Beside an empty cell, an empty one is like it.
-    fn find_inside(&mut self) {
-        self.inside = vec![false; self.columns * self.rows];
+    /// Which of the empty cells lie inside. Beside an empty cell, an empty one is like it.
+    fn found_inside(&self) -> Vec<bool> {
+        let mut inside = vec![false; self.columns * self.rows];
         for row in 0..self.rows {
             let mut known = None;
             for column in 0..self.columns {
@@ -165,9 +178,10 @@ impl SegmentIndex {
                 let is_inside =
                     || self.crosses_oddly(self.min + middle / self.per_cell, column, row);
                 known = is_empty.then(|| known.unwrap_or_else(is_inside));
-                self.inside[row * self.columns + column] = known == Some(true);
+                inside[row * self.columns + column] = known == Some(true);
             }
         }
+        inside
     }
 
     /// Whether `p` lies inside the closed polygon whose edges these are (even-odd rule).
@@ -179,7 +193,8 @@ impl SegmentIndex {
         }
         let (row, column) = (cell.y as usize, cell.x.max(0.0) as usize);
         if self.cell(column, row).is_empty() {
-            return self.inside[row * self.columns + column];
+            let inside = self.inside.get_or_init(|| self.found_inside());
+            return inside[row * self.columns + column];
         }
         self.crosses_oddly(p, column, row)
     }
@@ -215,7 +230,7 @@ impl SegmentIndex {
             self.min,
             self.min + DVec2::new(self.columns as f64, self.rows as f64) / self.per_cell,
         ));
-        let empty = usize::from(self.away[home.1 * self.columns + home.0]);
+        let empty = usize::from(self.away()[home.1 * self.columns + home.0]);
         for ring in empty..size.last_ring() {
             let clear = (ring.saturating_sub(1) as f64 / self.per_cell).max(outside);
             if clear * clear > best.0 {
@@ -275,6 +290,8 @@ mod tests {
         // Among cells as wide as the whole, and among many that are empty.
         for outline in [star(34), polygon::subdivided(&star(34), 0.3)] {
             let index = SegmentIndex::of_polygon(&outline);
+            // Never asked for anything by which it would learn which cells are empty.
+            let unaware = index.clone();
             let mut rng = Seed(5).stream(Stage::Tissue);
             for i in 0..2000 {
                 let p = DVec2::new(rng.between(-12.0, 12.0), rng.between(-12.0, 12.0));
@@ -283,12 +300,16 @@ mod tests {
                 assert_eq!(index.contains(p), polygon::contains(&outline, p), "{p}");
                 let touches = polygon::edges(&outline).any(|(a, b)| segments_touch(a, b, p, q));
                 assert_eq!(index.touches(p, q), touches);
+                let near = p + (q - p).clamp_length_max(1.5);
+                let touches = polygon::edges(&outline).any(|(a, b)| segments_touch(a, b, p, near));
+                assert_eq!(unaware.touches(p, near), touches);
                 let nearest = polygon::edges(&outline)
                     .map(|(a, b)| p.distance_squared(nearest_on_segment(a, b, p)))
                     .fold(f64::INFINITY, f64::min);
                 let (found, _) = index.nearest(p, 100.0).expect("something is nearest");
                 assert!((found - nearest).abs() < 1e-12);
             }
+            assert!(unaware.away.get().is_none() && unaware.inside.get().is_none());
         }
     }
 
@@ -299,7 +320,7 @@ mod tests {
         let full: Vec<_> = cells().filter(|&(x, y)| !index.cell(x, y).is_empty()).collect();
         for (x, y) in cells() {
             let away = full.iter().map(|&(i, j)| x.abs_diff(i).max(y.abs_diff(j))).min();
-            assert_eq!(Some(usize::from(index.away[y * index.columns + x])), away, "{x}, {y}");
+            assert_eq!(Some(usize::from(index.away()[y * index.columns + x])), away, "{x}, {y}");
         }
         assert!(cells().count() > 3 * full.len(), "most are empty");
     }

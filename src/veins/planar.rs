@@ -85,16 +85,16 @@ pub(super) fn is_gap_below(hub: DVec2, a: DVec2, b: DVec2, share: f64) -> bool {
 pub fn crossing_edges(graph: &VeinGraph) -> Vec<(NodeId, NodeId)> {
     let edges: Vec<(NodeId, NodeId)> = graph.edges().chain(graph.joins().iter().copied()).collect();
     let positions = graph.positions();
-    let line = |&(a, b): &(NodeId, NodeId)| Line::new([a, b], positions);
-    let length: f64 = edges.iter().map(line).map(|line| line.from.distance(line.to)).sum();
+    let lines: Vec<Line> = edges.iter().map(|&(a, b)| Line::new([a, b], positions)).collect();
+    let length: f64 = lines.iter().map(|line| line.from.distance(line.to)).sum();
     let bounds = Rect::around(positions.iter().copied());
-    let boxes = edges.iter().map(|edge| line(edge).around);
+    let boxes = lines.iter().map(Line::around);
     let cells = BoxCells::new(bounds, 1.5 * length / edges.len().max(1) as f64, boxes);
     let mut crossing = Vec::new();
     cells.for_each_pair(|i, j| {
-        let (one, other) = (edges[i as usize], edges[j as usize]);
-        if line(&one).is_in_the_way(&line(&other)) {
-            crossing.extend([one, other]);
+        let (i, j) = (i as usize, j as usize);
+        if lines[i].is_in_the_way(&lines[j]) {
+            crossing.extend([edges[i], edges[j]]);
         }
     });
     crossing.sort_unstable();

@@ -89,12 +89,8 @@ impl Scene {
         let midrib: Vec<DVec2> =
             midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
         let stalk = Stalk::new(paint.petiole, neck, &midrib, leads);
-        let (blade, below) = (margin.bounds(), stalk.bounds());
-        let frame = TextureFrame::around(
-            blade.min.min(below.min),
-            blade.max.max(below.max),
-            paint.texture.gutter,
-        );
+        let bounds = margin.bounds().joined(stalk.bounds());
+        let frame = TextureFrame::around(bounds.min, bounds.max, paint.texture.gutter);
         let per_mm = frame.pixels_per_mm(size);
         let tissue = seed.stream(Stage::Tissue).bits() as u32;
         let speckles = speckles(paint, margin, seed);

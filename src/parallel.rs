@@ -1,4 +1,5 @@
-//! Threads that stay awake for work handed out in small pieces, and memory that all of them ask for.
+//! Work shared out among threads: lists filled piece by piece, threads that stay awake for small pieces,
+//! and memory that all of them ask for.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -38,6 +39,19 @@ pub fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T
         list.par_extend(rayon::iter::repeat_n(value, more / 2));
         list.truncate(len);
     }
+}
+
+/// Fills a list on all threads, in pieces of `len` (the last may be shorter): `fill` gets the number of a
+/// piece and the piece.
+///
+/// By reference, so that handing out is built once for a kind of element and not for every caller: of a
+/// closure that rayon splits a compiler makes two dozen functions.
+pub fn for_each_piece<T: Send>(
+    list: &mut [T],
+    len: usize,
+    fill: &(dyn Fn(usize, &mut [T]) + Sync),
+) {
+    list.par_chunks_mut(len.max(1)).enumerate().for_each(|(i, piece)| fill(i, piece));
 }
 
 /// Runs `work` while the other threads of the current rayon pool look for pieces of it without falling
@@ -86,6 +100,19 @@ mod tests {
             assert_eq!(sum(n), (n, n + 1));
         }
         assert_eq!(awake(|| 7), 7);
+    }
+
+    #[test]
+    fn every_piece_of_a_list_is_filled_once() {
+        let mut list = vec![0; 23];
+        for_each_piece(&mut list, 5, &|i, piece| {
+            let len = piece.len();
+            piece.iter_mut().for_each(|value| *value += 100 * i + len);
+        });
+        let expected: Vec<usize> =
+            (0..23).map(|k| 100 * (k / 5) + if k < 20 { 5 } else { 3 }).collect();
+        assert_eq!(list, expected);
+        for_each_piece(&mut [0_u8; 0], 0, &|_, _| panic!("there is none"));
     }
 
     #[test]

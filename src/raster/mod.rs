@@ -14,6 +14,8 @@ pub mod smooth;
 pub mod thinning;
 pub mod threshold;
 
+use crate::parallel::for_each_piece;
+
 /// A rectangle of values, row 0 at the top.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid<T> {
@@ -82,6 +84,20 @@ impl<T> Grid<T> {
     pub fn get(&self, x: isize, y: isize) -> Option<&T> {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
         (x < self.width && y < self.height).then(|| &self.values[y * self.width + x])
+    }
+}
+
+impl<T: Copy + Default + Send> Grid<T> {
+    /// A grid of which `value` gives every value by its column and row; on all threads.
+    #[must_use]
+    pub fn computed(width: usize, height: usize, value: impl Fn(usize, usize) -> T + Sync) -> Self {
+        let mut grid = Self::filled(width, height, T::default());
+        for_each_piece(&mut grid.values, width, &|y, row| {
+            for (x, pixel) in row.iter_mut().enumerate() {
+                *pixel = value(x, y);
+            }
+        });
+        grid
     }
 }
 

@@ -4,12 +4,12 @@
 //! shares are painted as real numbers; where 16 bits are asked for they are kept so, beside the 8 bits
 //! that the preview and the cards take, on atlases and smaller levels too.
 
-use rayon::prelude::*;
-
 use super::dilation::Empty;
 use super::map::{MapKind, MapSet};
 use super::normals;
+use super::samples::words;
 use super::side::SideMaps;
+use crate::parallel::for_each_piece;
 use crate::raster::Grid;
 
 /// The planes of one side with 16 bits a channel; each has its map's size, or none.
@@ -60,39 +60,31 @@ impl Deep {
 
     /// The bytes of a map, row by row, high bytes first; `None` for one that has no plane here.
     fn samples(&self, map: MapKind) -> Option<Vec<u8>> {
-        let smooth = |&rough: &u16| u16::MAX - rough;
+        fn plane<T: Copy + Sync, const N: usize>(
+            plane: &Grid<T>,
+            channels: impl Fn(T) -> [u16; N] + Sync,
+        ) -> Vec<u8> {
+            words(plane.values().len(), |i| channels(plane.values()[i]))
+        }
+        let [occlusion, roughness, transmission] =
+            [&self.occlusion, &self.roughness, &self.transmission].map(Grid::values);
         Some(match map {
-            MapKind::BaseColour => bytes(&self.base_colour, |&texel| texel),
-            MapKind::Opacity => bytes(&self.base_colour, |&[.., alpha]| [alpha; 2]),
-            MapKind::Roughness => bytes(&self.roughness, |&rough| [rough]),
-            MapKind::Gloss => bytes(&self.roughness, |rough| [smooth(rough)]),
-            MapKind::AmbientOcclusion => bytes(&self.occlusion, |&open| [open]),
-            MapKind::Translucency => bytes(&self.translucency, |&texel| texel),
-            MapKind::VeinMask => bytes(&self.vein_mask, |&cover| [cover]),
+            MapKind::BaseColour => plane(&self.base_colour, |texel| texel),
+            MapKind::Opacity => plane(&self.base_colour, |[.., alpha]| [alpha; 2]),
+            MapKind::Roughness => plane(&self.roughness, |rough| [rough]),
+            MapKind::Gloss => plane(&self.roughness, |rough| [u16::MAX - rough]),
+            MapKind::AmbientOcclusion => plane(&self.occlusion, |open| [open]),
+            MapKind::Translucency => plane(&self.translucency, |texel| texel),
+            MapKind::VeinMask => plane(&self.vein_mask, |cover| [cover]),
             MapKind::MaskMap => {
-                let texels = self.occlusion.values().par_iter().zip(self.roughness.values());
-                big_endian(texels.map(|(&open, rough)| [0, open, 1 << 15, smooth(rough)]))
+                words(occlusion.len(), |i| [0, occlusion[i], 1 << 15, u16::MAX - roughness[i]])
             }
             MapKind::Orm => {
-                let texels = (self.occlusion.values(), self.roughness.values())
-                    .into_par_iter()
-                    .zip(self.transmission.values());
-                big_endian(texels.map(|((&open, &rough), &through)| [open, rough, 0, through]))
+                words(occlusion.len(), |i| [occlusion[i], roughness[i], 0, transmission[i]])
             }
             _ => return None,
         })
     }
-}
-
-fn bytes<T: Sync, const N: usize>(
-    plane: &Grid<T>,
-    channels: impl Fn(&T) -> [u16; N] + Sync + Send,
-) -> Vec<u8> {
-    big_endian(plane.values().par_iter().map(channels))
-}
-
-fn big_endian<const N: usize>(texels: impl ParallelIterator<Item = [u16; N]>) -> Vec<u8> {
-    texels.flat_map_iter(|texel| texel.into_iter().flat_map(u16::to_be_bytes)).collect()
 }
 
 impl MapKind {
@@ -120,16 +112,17 @@ impl SideMaps {
             MapKind::Normal if self.has(MapKind::Height) => self.fine_normals(per_texel, false),
             MapKind::NormalDx if self.has(MapKind::Height) => self.fine_normals(per_texel, true),
             _ => self.deep.as_ref().and_then(|deep| deep.samples(map)).unwrap_or_else(|| {
-                self.samples(map).into_par_iter().flat_map_iter(|byte| [byte, byte]).collect()
+                let bytes = self.samples(map);
+                words(bytes.len(), |i| [u16::from_be_bytes([bytes[i]; 2])])
             }),
         }
     }
 
     fn fine_normals(&self, per_texel: f32, y_down: bool) -> Vec<u8> {
         let size = self.size();
-        let rows = (0..size).into_par_iter().map(|y| {
-            let mut row = Vec::with_capacity(6 * size);
-            for x in 0..size {
+        let mut samples = vec![0; 6 * size * size];
+        for_each_piece(&mut samples, 6 * size, &|y, row| {
+            for (x, texel) in row.as_chunks_mut::<6>().0.iter_mut().enumerate() {
                 let covered = self.base_colour[(x, y)][3] > 0;
                 let (dx, dy) = if covered {
                     normals::slopes(&self.height, x, y, per_texel)
@@ -139,10 +132,10 @@ impl SideMaps {
                 let [nx, ny, nz] = normals::from_slopes(dx, dy);
                 let [nx, ny, nz] = [nx, ny, nz].map(|n| (n * 32767.5 + 32768.0) as u16);
                 let ny = if y_down { u16::MAX - ny } else { ny };
-                row.extend([nx, ny, nz].into_iter().flat_map(u16::to_be_bytes));
+                let words = [nx, ny, nz].map(u16::to_be_bytes);
+                texel.copy_from_slice(words.as_flattened());
             }
-            row
         });
-        rows.flatten_iter().collect()
+        samples
     }
 }

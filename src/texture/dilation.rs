@@ -5,10 +5,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::side::SideMaps;
 use super::spans::Spans;
+use crate::parallel::for_each_piece;
 use crate::raster::distance::{NearestByRows, runs_of};
 
 /// Empty texels of one row, and where what fills them is found.
@@ -92,8 +91,13 @@ impl Empty {
             let i = run.source as usize;
             plane[if self.mirrored { mirrored(i) } else { i }]
         };
-        let values: Vec<T> = self.runs.par_iter().map(source).collect();
-        plane.par_chunks_mut(self.size).enumerate().for_each(|(y, row)| {
+        let mut values = vec![plane[0]; self.runs.len()];
+        for_each_piece(&mut values, RUNS, &|i, values| {
+            for (value, run) in values.iter_mut().zip(&self.runs[i * RUNS..]) {
+                *value = source(run);
+            }
+        });
+        for_each_piece(plane, self.size, &|y, row| {
             let of_row = self.rows[y]..self.rows[y + 1];
             for (run, &value) in self.runs[of_row.clone()].iter().zip(&values[of_row]) {
                 let (start, end) = (usize::from(run.start), usize::from(run.end));
@@ -104,6 +108,9 @@ impl Empty {
         });
     }
 }
+
+/// Runs of which one thread after the other writes down the sources.
+const RUNS: usize = 1 << 12;
 
 /// The first texels in a row, within some columns, that are empty.
 fn gap(row: &[[u8; 4]], columns: Range<usize>) -> Option<Range<usize>> {

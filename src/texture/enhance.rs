@@ -5,10 +5,9 @@
 //! intensities along 45° emboss it, the picture is inverted and recoloured, and the white veins of the
 //! second step are added. Departs from it: the colours are the leaf's own instead of a scan's.
 
-use rayon::prelude::*;
-
 use super::side::SideMaps;
 use crate::geometry::noise;
+use crate::parallel::for_each_piece;
 use crate::raster::Grid;
 use crate::raster::color::{byte, word};
 
@@ -49,18 +48,10 @@ pub(super) fn steps(side: &SideMaps, per_mm: f32, seed: u32) -> Steps {
     }
     let smooth = blurred(&grained);
     // 7c: intensity stands for thickness; light falls in at 45°.
-    let embossed = Grid::from_values(
-        size,
-        size,
-        (0..size * size)
-            .into_par_iter()
-            .map(|i| {
-                let (x, y) = ((i % size) as isize, (i / size) as isize);
-                let at = |dx, dy| smooth.get(x + dx, y + dy).copied().unwrap_or(0.0);
-                (0.5 + EMBOSS * (at(1, 1) - at(-1, -1))).clamp(0.0, 1.0)
-            })
-            .collect(),
-    );
+    let embossed = Grid::computed(size, size, |x, y| {
+        let at = |by| smooth.get(x as isize + by, y as isize + by).copied().unwrap_or(0.0);
+        (0.5 + EMBOSS * (at(1) - at(-1))).clamp(0.0, 1.0)
+    });
     let tinted = embossed.map(|&v| PSEUDO.map(|c| c * v));
     // 7d, 7e: inverted, then in the colours of a leaf, which keep their lightness in the mean.
     let inverted = embossed.map(|&v| 1.0 - v);
@@ -87,7 +78,7 @@ pub(super) fn steps(side: &SideMaps, per_mm: f32, seed: u32) -> Steps {
 pub(super) fn montage(steps: &Steps) -> Grid<[u8; 3]> {
     let size = steps[0].width();
     let mut picture = Grid::filled(3 * size, 2 * size, [0; 3]);
-    picture.values_mut().par_chunks_mut(3 * size).enumerate().for_each(|(y, row)| {
+    for_each_piece(picture.values_mut(), 3 * size, &|y, row| {
         for (panel, steps) in steps[3 * (y / size)..][..3].iter().enumerate() {
             for (texel, step) in row[panel * size..].iter_mut().zip(steps.row(y % size)) {
                 *texel = step.map(byte);
@@ -115,27 +106,22 @@ pub(super) fn replace(side: &mut SideMaps, steps: &Steps) {
 
 /// The greatest value within `reach` pixels along a line of rows or columns.
 fn widened(grid: &Grid<f32>, reach: usize, (dx, dy): (isize, isize)) -> Grid<f32> {
-    let (width, reach) = (grid.width(), reach as isize);
-    let values = (0..grid.values().len()).into_par_iter().map(|i| {
-        let (x, y) = ((i % width) as isize, (i / width) as isize);
+    let reach = reach as isize;
+    Grid::computed(grid.width(), grid.height(), |x, y| {
         (-reach..=reach)
-            .filter_map(|k| grid.get(x + k * dx, y + k * dy))
+            .filter_map(|k| grid.get(x as isize + k * dx, y as isize + k * dy))
             .fold(0.0, |a: f32, &b| a.max(b))
-    });
-    Grid::from_values(width, grid.height(), values.collect())
+    })
 }
 
 /// The 3×3 Gaussian: 1 2 1 across and down, over 16.
 fn blurred(grid: &Grid<f32>) -> Grid<f32> {
-    let width = grid.width();
-    let values = (0..grid.values().len()).into_par_iter().map(|i| {
-        let (x, y) = ((i % width) as isize, (i / width) as isize);
-        let here = grid.values()[i];
-        let at = |dx, dy| grid.get(x + dx, y + dy).copied().unwrap_or(here);
+    Grid::computed(grid.width(), grid.height(), |x, y| {
+        let here = grid[(x, y)];
+        let at = |dx, dy| grid.get(x as isize + dx, y as isize + dy).copied().unwrap_or(here);
         let row = |dy| at(-1, dy) + 2.0 * at(0, dy) + at(1, dy);
         (row(-1) + 2.0 * row(0) + row(1)) / 16.0
-    });
-    Grid::from_values(width, grid.height(), values.collect())
+    })
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@
 //! the coverages in order, not by bisection.
 
 use palette::{LinSrgb, Srgb};
-use rayon::prelude::*;
 
 use super::deep::Deep;
 use super::side::{FLAT, SideMaps};
@@ -183,7 +182,7 @@ struct Mean<'a> {
 }
 
 impl Mean<'_> {
-    fn of<T: Sync, U: Send>(
+    fn of<T: Sync, U: Copy + Default + Send>(
         &self,
         plane: &Grid<T>,
         of_block: impl Fn(&Block, &[T]) -> U + Sync,
@@ -193,8 +192,7 @@ impl Mean<'_> {
             return Grid::from_values(0, 0, Vec::new());
         }
         let half = self.spans.len();
-        let value = |i: usize| of_block(&self.block(i % half, i / half), plane.values());
-        Grid::from_values(half, half, (0..half * half).into_par_iter().map(value).collect())
+        Grid::computed(half, half, |x, y| of_block(&self.block(x, y), plane.values()))
     }
 
     fn block(&self, column: usize, row: usize) -> Block {

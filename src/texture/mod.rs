@@ -31,6 +31,7 @@ pub mod pigment;
 pub mod plates;
 mod preview;
 pub mod relief;
+mod samples;
 mod scene;
 mod side;
 mod spans;

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::side::{FLAT, SideMaps};
 use super::spans::Spans;
 use crate::geometry::whole;
+use crate::parallel::for_each_piece;
 use crate::raster::Grid;
 
 /// The unit normal of a surface whose height rises by `dx` per unit to the right and by `dy` per
@@ -30,7 +29,7 @@ pub fn encoded(normal: [f32; 3]) -> [u8; 3] {
 pub(super) fn fill(side: &mut SideMaps, spans: &Spans, per_texel: f32) {
     let size = side.size();
     let SideMaps { base_colour, height, normal, .. } = side;
-    normal.values_mut().par_chunks_mut(size.max(1)).enumerate().for_each(|(y, normals)| {
+    for_each_piece(normal.values_mut(), size, &|y, normals| {
         let colours = base_colour.row(y);
         let columns = spans.row(y);
         pulp::Arch::new().dispatch(Row { y, columns, colours, height, per_texel, normals });

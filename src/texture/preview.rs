@@ -3,10 +3,9 @@
 //! Lambert and GGX (B. Walter et al., "Microfacet models for refraction through rough surfaces",
 //! EGSR 2007) under one sun and an even sky, from the maps alone, in linear light.
 
-use rayon::prelude::*;
-
 use super::side::SideMaps;
 use super::spectrum::{decoded, encoded};
+use crate::parallel::for_each_piece;
 use crate::raster::Grid;
 
 /// Panels are no larger than this (pixels): larger maps are averaged down.
@@ -37,7 +36,7 @@ pub(super) fn lit(front: &SideMaps, back: &SideMaps) -> Grid<[u8; 3]> {
     let views: [(&SideMaps, View); 3] =
         [(front, View::Lit), (back, View::Lit), (front, View::Against)];
     let mut picture = Grid::filled(3 * side, side, [0; 3]);
-    picture.values_mut().par_chunks_mut(3 * side).enumerate().for_each(|(y, row)| {
+    for_each_piece(picture.values_mut(), 3 * side, &|y, row| {
         for (panel, (maps, view)) in views.iter().enumerate() {
             for x in 0..side {
                 let mut sum = [0.0; 3];

@@ -1,10 +1,9 @@
 //! The maps of one side, as planes of pixels.
 
-use rayon::prelude::*;
-
 use super::deep::Deep;
 use super::dilation::Empty;
 use super::map::{MapKind, MapSet, Outside};
+use super::samples;
 use crate::raster::Grid;
 
 /// The normal of a plain surface.
@@ -117,31 +116,42 @@ impl SideMaps {
     pub fn samples(&self, map: MapKind) -> Vec<u8> {
         match map {
             MapKind::BaseColour => self.base_colour.values().as_flattened().to_vec(),
-            MapKind::Opacity => bytes(&self.base_colour, |&[.., alpha]| [alpha, alpha]),
+            MapKind::Opacity => samples::of_plane(&self.base_colour, |&[.., alpha]| [alpha, alpha]),
             MapKind::Normal => self.normal.values().as_flattened().to_vec(),
-            MapKind::NormalDx => bytes(&self.normal, |&[x, y, z]| [x, u8::MAX - y, z]),
-            MapKind::Height => bytes(&self.height, |height| height.to_be_bytes()),
+            MapKind::NormalDx => samples::of_plane(&self.normal, |&[x, y, z]| [x, u8::MAX - y, z]),
+            MapKind::Height => samples::of_plane(&self.height, |height| height.to_be_bytes()),
             MapKind::Roughness => self.roughness.values().to_vec(),
-            MapKind::Gloss => bytes(&self.roughness, |&roughness| [u8::MAX - roughness]),
+            MapKind::Gloss => {
+                samples::of_plane(&self.roughness, |&roughness| [u8::MAX - roughness])
+            }
             MapKind::AmbientOcclusion => self.occlusion.values().to_vec(),
             MapKind::MaskMap => {
-                let packed = self.occlusion.values().par_iter().zip(self.roughness.values());
-                let packed = packed.map(|(&ao, &roughness)| [0, ao, 128, u8::MAX - roughness]);
-                packed.collect::<Vec<_>>().into_flattened()
+                let [occlusion, roughness] = [&self.occlusion, &self.roughness].map(Grid::values);
+                samples::packed(occlusion.len(), |texels, bytes| {
+                    let planes = occlusion[texels.clone()].iter().zip(&roughness[texels]);
+                    for (bytes, (&open, &rough)) in bytes.iter_mut().zip(planes) {
+                        *bytes = [0, open, 128, u8::MAX - rough];
+                    }
+                })
             }
             MapKind::Orm => {
-                let roughness = self.roughness.values().par_iter();
-                let packed = (self.occlusion.values(), self.transmission.values())
-                    .into_par_iter()
-                    .zip(roughness)
-                    .map(|((&ao, &transmission), &roughness)| [ao, roughness, 0, transmission]);
-                packed.collect::<Vec<_>>().into_flattened()
+                let planes = [&self.occlusion, &self.roughness, &self.transmission];
+                let [occlusion, roughness, transmission] = planes.map(Grid::values);
+                samples::packed(occlusion.len(), |texels, bytes| {
+                    let surface = occlusion[texels.clone()].iter().zip(&roughness[texels.clone()]);
+                    let planes = surface.zip(&transmission[texels]);
+                    for (bytes, ((&open, &rough), &through)) in bytes.iter_mut().zip(planes) {
+                        *bytes = [open, rough, 0, through];
+                    }
+                })
             }
             MapKind::Translucency => self.translucency.values().as_flattened().to_vec(),
-            MapKind::Thickness => bytes(&self.thickness, |thickness| thickness.to_be_bytes()),
+            MapKind::Thickness => {
+                samples::of_plane(&self.thickness, |thickness| thickness.to_be_bytes())
+            }
             MapKind::VeinMask => self.vein_mask.values().to_vec(),
             MapKind::VeinOrder => self.vein_order.values().to_vec(),
-            MapKind::Bump => bytes(&self.bump, |&height| [height, 0, 0]),
+            MapKind::Bump => samples::of_plane(&self.bump, |&height| [height, 0, 0]),
             MapKind::Preview => self.preview.values().as_flattened().to_vec(),
             MapKind::Enhancement => self.enhancement.values().as_flattened().to_vec(),
         }
@@ -201,11 +211,4 @@ impl SideMaps {
             .find(|&(_, width, height)| (width, height) != (size, size) && width + height > 0)
             .map(|(name, ..)| name)
     }
-}
-
-fn bytes<T: Sync, const N: usize>(
-    plane: &Grid<T>,
-    bytes: impl Fn(&T) -> [u8; N] + Sync + Send,
-) -> Vec<u8> {
-    plane.values().par_iter().map(bytes).collect::<Vec<_>>().into_flattened()
 }

@@ -2,7 +2,6 @@
 //! to them are good to a small part of a pixel.
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::network::Network;
 use crate::geometry::Rect;
@@ -82,7 +81,8 @@ impl Lines {
         let Frame { width, height, .. } = self.frame;
         let nearest = nearest_sites(width, height, |i| self.is_line(i));
         let corner = |i: usize| DVec2::new((i % width) as f64, (i / width) as f64);
-        let distance = |i: usize| {
+        let distance = |x: usize, y: usize| {
+            let i = y * width + x;
             let to = |near: usize| match nearest.values()[near] {
                 NO_SITE => f64::INFINITY,
                 site => {
@@ -92,8 +92,7 @@ impl Lines {
             };
             neighbours(i, width, height).map(to).fold(to(i), f64::min).sqrt() as f32
         };
-        let values = (0..width * height).into_par_iter().map(distance).collect();
-        Grid::from_values(width, height, values)
+        Grid::computed(width, height, distance)
     }
 }
 

@@ -139,6 +139,10 @@ impl SegmentIndex {
     pub fn any_near(&self, a: DVec2, b: DVec2, mut test: impl FnMut(usize) -> bool) -> bool {
         let (x0, y0, x1, y1) = self.cells(a.min(b), a.max(b));
         let widest = (x1 - x0).max(y1 - y0);
+        // By far the most are the short edges of veins: they need not ask what is known of other cells.
+        if widest == 0 {
+            return self.cell(x0, y0).iter().any(|&i| test(i as usize));
+        }
         let known = self.away.get().map(Vec::as_slice).unwrap_or_default();
         let known = if widest < FEW_CELLS { known } else { self.away() };
         let away =

@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use venation::document::{Comments, Document};
+use venation::geometry::{DVec2, polygon};
 use venation::margin::lobes::LobeSide;
 use venation::margin::{self, Landmark, LandmarkKind, MarginKind};
 use venation::presets::{self, FIGURES, PRESETS};
@@ -112,4 +113,37 @@ fn lobes_on_each_side_are_alike_without_asymmetry_and_drawn_for_themselves_with_
     let squares = |side: usize| apart.iter().map(|p| (p[side] - mean(side)).powi(2)).sum::<f64>();
     let correlation = product / (squares(0) * squares(1)).sqrt();
     assert!(correlation.abs() < 0.4, "of two independent draws: {correlation}");
+}
+
+/// Where an outline (anticlockwise) is hollow: stretches that turn clockwise, by more than a wave of the
+/// margin does.
+fn hollows(outline: &[DVec2]) -> usize {
+    const WAVE_DEG: f64 = 12.0;
+    let points = polygon::resampled(outline, 0.4);
+    let n = points.len();
+    let turn = |i: usize| {
+        let [a, b, c] = [i + n - 1, i, i + 1].map(|k| points[k % n]);
+        (b - a).angle_to(c - b).to_degrees()
+    };
+    let bulge = (0..n).find(|&i| turn(i) > 0.0).expect("it goes round");
+    let (mut count, mut turned) = (0, 0.0);
+    for turn in (bulge..=bulge + n).map(|i| turn(i % n)) {
+        if turn < -0.3 {
+            turned -= turn;
+        } else {
+            count += usize::from(turned > WAVE_DEG);
+            turned = 0.0;
+        }
+    }
+    count
+}
+
+#[test]
+fn an_oak_is_hollow_between_its_lobes_and_at_the_base_and_nowhere_else() {
+    let document = presets::find("oak").expect("oak").document().expect("it parses");
+    for seed in 0..60 {
+        let spec = document.resolve(Seed(seed)).expect("it resolves");
+        let margin = margin::build(&spec.margin, Seed(seed)).expect("a margin");
+        assert_eq!(hollows(margin.outline()), 13, "seed {seed}");
+    }
 }

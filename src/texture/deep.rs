@@ -7,7 +7,7 @@
 use super::dilation::Empty;
 use super::map::{MapKind, MapSet};
 use super::normals;
-use super::samples::words;
+use super::samples::{in_all, words};
 use super::side::SideMaps;
 use crate::parallel::for_each_piece;
 use crate::raster::Grid;
@@ -66,8 +66,8 @@ impl Deep {
         ) -> Vec<u8> {
             words(plane.values().len(), |i| channels(plane.values()[i]))
         }
-        let [occlusion, roughness, transmission] =
-            [&self.occlusion, &self.roughness, &self.transmission].map(Grid::values);
+        let planes = [&self.occlusion, &self.roughness, &self.transmission].map(Grid::values);
+        let [occlusion, roughness, transmission] = planes;
         Some(match map {
             MapKind::BaseColour => plane(&self.base_colour, |texel| texel),
             MapKind::Opacity => plane(&self.base_colour, |[.., alpha]| [alpha; 2]),
@@ -77,10 +77,10 @@ impl Deep {
             MapKind::Translucency => plane(&self.translucency, |texel| texel),
             MapKind::VeinMask => plane(&self.vein_mask, |cover| [cover]),
             MapKind::MaskMap => {
-                words(occlusion.len(), |i| [0, occlusion[i], 1 << 15, u16::MAX - roughness[i]])
+                words(in_all(&planes[..2]), |i| [0, occlusion[i], 1 << 15, u16::MAX - roughness[i]])
             }
             MapKind::Orm => {
-                words(occlusion.len(), |i| [occlusion[i], roughness[i], 0, transmission[i]])
+                words(in_all(&planes), |i| [occlusion[i], roughness[i], 0, transmission[i]])
             }
             _ => return None,
         })
@@ -137,5 +137,24 @@ impl SideMaps {
             }
         });
         samples
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_packed_map_of_which_a_plane_was_not_painted_is_empty() {
+        let maps = MapSet::of(&[MapKind::AmbientOcclusion]);
+        for maps in [maps, maps.deep()] {
+            let side = SideMaps::empty(8, maps);
+            for map in [MapKind::Orm, MapKind::MaskMap] {
+                for asked in [8, 16] {
+                    assert!(side.samples_of(map, asked, 1.0).is_empty(), "{map:?} {asked}");
+                }
+            }
+            assert_eq!(side.samples(MapKind::AmbientOcclusion).len(), 64);
+        }
     }
 }

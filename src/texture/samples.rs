@@ -21,6 +21,11 @@ pub(super) fn packed<const N: usize>(
     bytes
 }
 
+/// How many texels all of some planes have: none where one of them was not painted.
+pub(super) fn in_all<T>(planes: &[&[T]]) -> usize {
+    planes.iter().map(|plane| plane.len()).min().unwrap_or(0)
+}
+
 /// The bytes of a plane, N of each texel.
 pub(super) fn of_plane<T: Sync, const N: usize>(
     plane: &Grid<T>,

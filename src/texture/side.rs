@@ -126,8 +126,9 @@ impl SideMaps {
             }
             MapKind::AmbientOcclusion => self.occlusion.values().to_vec(),
             MapKind::MaskMap => {
-                let [occlusion, roughness] = [&self.occlusion, &self.roughness].map(Grid::values);
-                samples::packed(occlusion.len(), |texels, bytes| {
+                let planes = [&self.occlusion, &self.roughness].map(Grid::values);
+                let [occlusion, roughness] = planes;
+                samples::packed(samples::in_all(&planes), |texels, bytes| {
                     let planes = occlusion[texels.clone()].iter().zip(&roughness[texels]);
                     for (bytes, (&open, &rough)) in bytes.iter_mut().zip(planes) {
                         *bytes = [0, open, 128, u8::MAX - rough];
@@ -135,9 +136,10 @@ impl SideMaps {
                 })
             }
             MapKind::Orm => {
-                let planes = [&self.occlusion, &self.roughness, &self.transmission];
-                let [occlusion, roughness, transmission] = planes.map(Grid::values);
-                samples::packed(occlusion.len(), |texels, bytes| {
+                let planes =
+                    [&self.occlusion, &self.roughness, &self.transmission].map(Grid::values);
+                let [occlusion, roughness, transmission] = planes;
+                samples::packed(samples::in_all(&planes), |texels, bytes| {
                     let surface = occlusion[texels.clone()].iter().zip(&roughness[texels.clone()]);
                     let planes = surface.zip(&transmission[texels]);
                     for (bytes, ((&open, &rough), &through)) in bytes.iter_mut().zip(planes) {

@@ -11,7 +11,7 @@ const MOST: usize = 4;
 
 /// Among how many threads the work of one leaf is shared out.
 #[must_use]
-pub fn hands() -> usize {
+pub(crate) fn hands() -> usize {
     rayon::current_num_threads().min(MOST)
 }
 
@@ -23,7 +23,7 @@ const WORTH_SHARING: usize = 1 << 16;
 /// The system hands out memory page by page where it is first written to, which takes longer than the
 /// writing: of much memory every thread asks for a part.
 #[must_use]
-pub fn filled<T: Copy + Send + Sync>(len: usize, value: T) -> Vec<T> {
+pub(crate) fn filled<T: Copy + Send + Sync>(len: usize, value: T) -> Vec<T> {
     if len < WORTH_SHARING || hands() == 1 {
         return vec![value; len];
     }
@@ -32,7 +32,7 @@ pub fn filled<T: Copy + Send + Sync>(len: usize, value: T) -> Vec<T> {
 
 /// Makes room in a list for `more` elements. On several threads half of it is asked for here and now, as
 /// [`filled`] does it, and not by the one thread that fills the list later; `value` stands for any.
-pub fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T) {
+pub(crate) fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T) {
     list.reserve(more);
     if more >= WORTH_SHARING && hands() > 1 {
         let len = list.len();
@@ -46,7 +46,7 @@ pub fn make_room<T: Copy + Send + Sync>(list: &mut Vec<T>, more: usize, value: T
 ///
 /// By reference, so that handing out is built once for a kind of element and not for every caller: of a
 /// closure that rayon splits a compiler makes two dozen functions.
-pub fn for_each_piece<T: Send>(
+pub(crate) fn for_each_piece<T: Send>(
     list: &mut [T],
     len: usize,
     fill: &(dyn Fn(usize, &mut [T]) + Sync),

@@ -95,6 +95,16 @@ impl OutsideLimits {
     }
 }
 
+/// A word that is none of a list.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{word}` is none of {}", words.join(", "))]
+pub struct UnknownWord {
+    /// As given.
+    pub word: String,
+    /// Those that there are.
+    pub words: &'static [&'static str],
+}
+
 /// A word of a list, as a parameter.
 pub trait Choice {
     /// The words, in the order of the variants.
@@ -358,6 +368,19 @@ macro_rules! words {
 
         impl $crate::parameter::Choice for $Name {
             const WORDS: &'static [&'static str] = &[$( $word ),*];
+        }
+
+        impl std::str::FromStr for $Name {
+            type Err = $crate::parameter::UnknownWord;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                Self::ALL.iter().copied().find(|variant| variant.word() == text).ok_or_else(|| {
+                    $crate::parameter::UnknownWord {
+                        word: text.to_owned(),
+                        words: <Self as $crate::parameter::Choice>::WORDS,
+                    }
+                })
+            }
         }
 
         impl std::fmt::Display for $Name {

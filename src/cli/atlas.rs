@@ -15,7 +15,7 @@ use venation::spec::{LeafSpec, Output};
 use venation::texture::atlas::{AtlasSheet, PixelRect, covered};
 use venation::texture::map::Outside;
 
-use super::generate::{pool, write_failure};
+use super::generate::pool;
 use super::leaf_args::{self, LeafArgs};
 use super::output_args::OutputArgs;
 use super::progress::{Counter, ProgressWord};
@@ -88,9 +88,12 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let overwrite = args.run.overwrite();
     let files = collisions(&folder, names.iter().map(String::as_str));
     if overwrite == Overwrite::Refuse && !files.is_empty() {
-        return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
+        return Err(io::Error::WouldOverwrite { folder, files }.into());
     }
     // Nothing is grown that could not fit: a leaf takes no less than this.
+    if padding >= size {
+        return Err(no_room(seeds.len(), size, padding));
+    }
     let least = (LEAST_SIDE_PX + padding) * (LEAST_WIDTH_PX + padding);
     if seeds.len().saturating_mul(least) > (size + padding).pow(2) {
         return Err(no_room(seeds.len(), size, padding));
@@ -111,7 +114,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
             packed = Some(sheet.packed(&ready, size));
             paint(ready, &sheet, (size, padding), &first, &output, &counter)
         })?;
-        write_files(&folder, &files, overwrite).map_err(|error| write_failure(&error))?;
+        write_files(&folder, &files, overwrite)?;
     }
     let listed: Vec<String> =
         names.iter().map(|name| folder.join(name).display().to_string()).collect();

@@ -6,6 +6,7 @@ mod measures;
 mod season;
 mod trails;
 
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use rayon::prelude::*;
@@ -106,6 +107,10 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         (list, one) => seeds::chosen(list.as_deref(), one, document.seed)?,
     };
     if args.by == By::Season {
+        if seeds.len() > 1 {
+            let problem = "--seeds: --by season shows one leaf; give one seed";
+            return Err(Failure::Input(problem.into()));
+        }
         return through_the_year(args, &document, seeds[0], context);
     }
     if args.frames.is_some() {
@@ -136,7 +141,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     }
     report(args, &measures::records(&cells), context)?;
     if !context.quiet && !args.json {
-        eprint!("{}", measures::summary(args.by, &cells));
+        let _ = write!(std::io::stderr(), "{}", measures::summary(args.by, &cells));
     }
     Ok(())
 }
@@ -172,8 +177,10 @@ fn through_the_year(
     context: &mut Context<'_>,
 ) -> Result<(), Failure> {
     if let (Some(frames), Some(out)) = (args.frames, &args.out) {
-        if args.json {
-            return Err(Failure::Input("--json: a film has no measures".into()));
+        for (given, flag) in [(args.json, "--json"), (args.csv.is_some(), "--csv")] {
+            if given {
+                return Err(Failure::Input(format!("{flag}: a film has no measures")));
+            }
         }
         let year = season::Year::new(document, seed)?;
         return year.film(frames as usize, out, (args.force, args.dry_run), context);

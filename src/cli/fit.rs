@@ -105,7 +105,9 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         None => Document::new(),
     };
     let outputs = args.outputs(&paths, single)?;
-    super::refuse_existing(outputs.iter().flatten().chain(&args.sheet), args.force)?;
+    let written = || outputs.iter().flatten().chain(&args.sheet);
+    super::spare_inputs(written(), &paths.iter().collect::<Vec<_>>())?;
+    super::refuse_existing(written(), args.force)?;
 
     let results: Vec<Result<Fitted, String>> =
         paths.par_iter().map(|path| args.fit(path)).collect();

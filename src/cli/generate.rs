@@ -131,9 +131,11 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         let files = job.collisions();
         if *overwrite == Overwrite::Refuse && !files.is_empty() {
             let folder = job.folder.clone();
-            return Err(write_failure(&io::Error::WouldOverwrite { folder, files }));
+            return Err(would_overwrite(&io::Error::WouldOverwrite { folder, files }));
         }
     }
+    batch.check()?;
+    let pool = pool(args.run.threads)?;
     notes::tell_sizes(context, &todo);
     if args.run.dry_run {
         return plan(args, context, &batch, &todo);
@@ -142,9 +144,15 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     notes::tell_unused(context, &todo);
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
-    let results: Vec<Result<Made, Failure>> = pool(args.run.threads)?.install(|| {
+    let results: Vec<Result<Made, Failure>> = pool.install(|| {
         let results = todo.par_iter().map(|(job, overwrite)| {
-            let result = make(job, *overwrite, bars);
+            let result = make(job, *overwrite, bars).or_else(|failure| match failure {
+                // Another process with the same orders was here first.
+                Failure::Exists(_) if args.skip_existing && job.is_done() => {
+                    Ok(Made::of(job, "skipped"))
+                }
+                failure => Err(failure),
+            });
             counter.one_more();
             result
         });
@@ -167,7 +175,7 @@ impl Batch {
     fn new(args: &Args, document: &Document) -> Result<Self, Failure> {
         let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
         let single = args.seeds.is_none() && args.shard.is_none();
-        let alone = seeds.len() == 1;
+        let alone = args.seeds.is_none();
         let run_sha256 =
             args.shard.map(|_| io::run_sha256(&document.to_toml(Comments::None), &seeds));
         let jobs: Vec<Job> = seeds
@@ -187,6 +195,14 @@ impl Batch {
         Ok(Self { jobs, manifest, run_sha256 })
     }
 
+    /// Refuses a manifest that a run could not add to.
+    fn check(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.manifest {
+            batch::others(path, &[])?;
+        }
+        Ok(())
+    }
+
     /// Writes the batch's manifest: what is there now of every leaf.
     fn seal(&self, problems: &[(u64, String)]) -> Result<(), Failure> {
         let Some(path) = &self.manifest else { return Ok(()) };
@@ -195,7 +211,7 @@ impl Batch {
         };
         let mut lines: Vec<_> = self.jobs.iter().map(|job| job.line(problem(job.seed))).collect();
         lines.iter_mut().for_each(|line| line.run_sha256.clone_from(&self.run_sha256));
-        lines.extend(batch::others(path, &lines).map_err(Failure::Input)?);
+        lines.extend(batch::others(path, &lines)?);
         super::save(path, batch::to_jsonl(&lines).into_bytes())
     }
 }
@@ -232,19 +248,8 @@ pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure>
 fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     let mut bar = Bar::new(quiet, "");
     let leaf = pipeline::generate(&job.spec, Seed(job.seed), &mut bar)?;
-    let files = io::encode_leaf(&LeafFiles {
-        name: &job.spec.name,
-        title: &job.spec.title,
-        seed: leaf.seed,
-        margin: &leaf.grown.margin,
-        venation: &leaf.grown.venation,
-        textures: &leaf.textures,
-        spec_toml: &job.toml,
-        specularity: job.spec.relief.specularity,
-        roughness: job.spec.relief.roughness,
-        output: &job.output,
-    });
-    write_files(&job.folder, &files, overwrite).map_err(|error| write_failure(&error))?;
+    let files = io::encode_leaf(&LeafFiles::of(&leaf, &job.toml, &job.output));
+    write_files(&job.folder, &files, overwrite)?;
     Ok(Made {
         files: files.into_iter().map(|(name, _)| name).collect(),
         nodes: leaf.grown.venation.graph().len(),
@@ -254,13 +259,8 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
     })
 }
 
-pub(super) fn write_failure(error: &io::Error) -> Failure {
-    match error {
-        io::Error::WouldOverwrite { .. } => {
-            Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))
-        }
-        _ => Failure::Input(error.to_string()),
-    }
+fn would_overwrite(error: &io::Error) -> Failure {
+    Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))
 }
 
 fn shown(path: &Path) -> String {
@@ -292,9 +292,11 @@ fn report(
             }
         }
     }
-    let is_sealed = failures.len() < all || all == 0;
-    if is_sealed {
-        batch.seal(&problems)?;
+    // A shard of which every leaf failed is done, too: the others are not to wait for it.
+    let sealed = batch.seal(&problems);
+    let is_sealed = sealed.is_ok();
+    if failures.is_empty() || failures.len() < all {
+        sealed?;
     }
     let manifest = batch.manifest.as_deref().filter(|_| is_sealed);
     tell(args, context, manifest, &list, skipped)?;

@@ -24,6 +24,8 @@ pub(crate) enum GrowthWord {
     Isotropic,
     /// Different rates across and along.
     Anisotropic,
+    /// Rates that differ from place to place (`growth.rates`).
+    NonUniform,
 }
 
 impl GrowthWord {
@@ -33,6 +35,7 @@ impl GrowthWord {
             Self::Marginal => "marginal",
             Self::Isotropic => "isotropic",
             Self::Anisotropic => "anisotropic",
+            Self::NonUniform => "non-uniform",
         }
     }
 }

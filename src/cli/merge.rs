@@ -27,8 +27,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    let files = batch::shard_files(&args.shards).map_err(Failure::Input)?;
-    let lines = batch::merge(&files).map_err(Failure::Input)?;
+    let files = batch::shard_files(&args.shards)?;
+    let lines = batch::merge(&files)?;
     let text = batch::to_jsonl(&lines);
     let beside = || files[0].with_file_name(batch::BATCH_FILE);
     let path = args.out.clone().unwrap_or_else(beside);

@@ -6,6 +6,7 @@
 mod atlas;
 mod bench;
 mod compare;
+mod failure;
 mod fit;
 mod generate;
 mod inspect;
@@ -23,69 +24,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
-use venation::io::write::{Overwrite, write_files};
-
-/// Why a command stopped.
-#[derive(Debug)]
-pub(crate) enum Failure {
-    /// Something nobody foresaw.
-    Unexpected(String),
-    /// Bad arguments or input.
-    Input(String),
-    /// Files would be overwritten.
-    Exists(String),
-    /// Some items of a batch failed; each was reported when it did.
-    Partial(String),
-    /// Whoever read stdout has gone.
-    BrokenPipe,
-}
-
-impl Failure {
-    pub(crate) fn code(&self) -> u8 {
-        match self {
-            Self::Unexpected(_) => 1,
-            Self::Input(_) => 2,
-            Self::Exists(_) => 3,
-            Self::Partial(_) => 4,
-            Self::BrokenPipe => 0,
-        }
-    }
-
-    pub(crate) fn message(&self) -> Option<&str> {
-        match self {
-            Self::Unexpected(m) | Self::Input(m) | Self::Exists(m) | Self::Partial(m) => Some(m),
-            Self::BrokenPipe => None,
-        }
-    }
-}
-
-impl From<std::io::Error> for Failure {
-    /// For writes to stdout only: files have their own error, which names them.
-    fn from(error: std::io::Error) -> Self {
-        match error.kind() {
-            std::io::ErrorKind::BrokenPipe => Self::BrokenPipe,
-            _ => Self::Unexpected(format!("stdout: {error}")),
-        }
-    }
-}
-
-impl From<venation::error::Error> for Failure {
-    fn from(error: venation::error::Error) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl From<bench::Error> for Failure {
-    fn from(error: bench::Error) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl From<venation::document::DocumentError> for Failure {
-    fn from(error: venation::document::DocumentError) -> Self {
-        Self::Input(error.to_string())
-    }
-}
+pub(crate) use failure::Failure;
+use venation::io::write::{Overwrite, collisions, write_files};
 
 /// Where a command writes, and how much it says.
 pub(crate) struct Context<'a> {
@@ -111,7 +51,8 @@ pub(crate) fn complain(message: &str) {
     for c in message.chars() {
         if c.is_control() { line.extend(c.escape_default()) } else { line.push(c) }
     }
-    eprintln!("venation: {line}");
+    // Where nobody can be told, the work goes on.
+    let _ = writeln!(std::io::stderr(), "venation: {line}");
 }
 
 const LONG_ABOUT: &str = "\
@@ -222,7 +163,7 @@ fn refuse_existing<'a>(
         let problem = format!("{}: two outputs cannot be one file; name another", path.display());
         return Err(Failure::Input(problem));
     }
-    match paths.into_iter().find(|path| !force && path.exists()) {
+    match paths.into_iter().find(|path| !force && is_there(path)) {
         Some(path) => {
             let problem = format!("{}: exists already; --force overwrites", path.display());
             Err(Failure::Exists(problem))
@@ -231,12 +172,39 @@ fn refuse_existing<'a>(
     }
 }
 
-/// Writes one file, whole or not at all.
+/// Refuses, forced or not, to write over what is read.
+fn spare_inputs<'a>(
+    outputs: impl IntoIterator<Item = &'a PathBuf>,
+    inputs: &[&PathBuf],
+) -> Result<(), Failure> {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let read: Vec<PathBuf> = inputs.iter().filter_map(|path| real(path)).collect();
+    let mut outputs = outputs.into_iter();
+    match outputs.find(|path| real(path).is_some_and(|path| read.contains(&path))) {
+        Some(path) => {
+            let problem = format!("{}: is read; write to another file", path.display());
+            Err(Failure::Input(problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether something is at a path, be it a link to nowhere.
+fn is_there(path: &Path) -> bool {
+    let (folder, name) = parted(path);
+    !collisions(folder, [name.as_str()]).is_empty()
+}
+
+/// Writes one file, whole or not at all; it is known that it may be written.
 fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let (folder, name) = parted(path);
+    Ok(write_files(folder, &[(name, bytes)], Overwrite::Force)?)
+}
+
+/// The folder of a path and the name in it.
+fn parted(path: &Path) -> (&Path, String) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    write_files(folder, &[(name, bytes)], Overwrite::Force)
-        .map_err(|error| Failure::Input(error.to_string()))
+    (path.parent().unwrap_or(Path::new("")), name)
 }
 
 /// clap's message in one line: what is wrong and its tip, without usage.

@@ -121,8 +121,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     let names = names(args);
     let taken = collisions(&out, names.iter().map(String::as_str));
     if !args.force && !taken.is_empty() {
-        let error = io::Error::WouldOverwrite { folder: out, files: taken };
-        return Err(Failure::Exists(format!("{error}; --force overwrites")));
+        return Err(io::Error::WouldOverwrite { folder: out, files: taken }.into());
     }
 
     let stations: Vec<Station> = leaves
@@ -305,10 +304,7 @@ fn write(args: &Args, out: &Path, frames: &[Frame], seed: Seed) -> Result<Vec<St
     files.push(("strip.png".into(), image::colour_png(&strip, &image::Caption::default())));
     files.push(("animation.png".into(), animation::apng(&pictures, args.fps)));
     let overwrite = if args.force { Overwrite::Force } else { Overwrite::Refuse };
-    write_files(out, &files, overwrite).map_err(|error| match error {
-        io::Error::WouldOverwrite { .. } => Failure::Exists(format!("{error}; --force overwrites")),
-        error => Failure::Input(error.to_string()),
-    })?;
+    write_files(out, &files, overwrite)?;
     Ok(files.into_iter().map(|(name, _)| name).collect())
 }
 

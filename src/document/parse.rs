@@ -49,8 +49,9 @@ impl Reader<'_> {
                 }
                 DeValue::Array(items) if records::is_list(&key) => self.records(&key, items)?,
                 value if key == SEED => {
-                    let seed = integer(value).and_then(|n| u64::try_from(n).ok());
-                    let wrong = || fail("seed takes a whole number from 0 on".into());
+                    let seed = seed(value);
+                    let wrong =
+                        || fail(format!("{SEED} takes a whole number from 0 to {}", u64::MAX));
                     self.document.seed = Some(seed.ok_or_else(wrong)?);
                 }
                 _ if key == VERSION => {}
@@ -255,6 +256,14 @@ fn range(low: f64, high: f64, parameter: &Parameter) -> Result<Value, String> {
 fn integer(value: &DeValue<'_>) -> Option<i64> {
     match value {
         DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
+        _ => None,
+    }
+}
+
+/// The whole range of the command line: more than TOML asks its readers to know.
+fn seed(value: &DeValue<'_>) -> Option<u64> {
+    match value {
+        DeValue::Integer(n) => u64::from_str_radix(n.as_str(), n.radix()).ok(),
         _ => None,
     }
 }

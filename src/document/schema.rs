@@ -30,7 +30,18 @@ pub fn schema() -> Json {
         "seed",
         json!({
             "description": "Seed of everything random; --seed and --seeds override it.",
-            "type": "integer", "minimum": 0,
+            "type": "integer", "minimum": 0, "maximum": u64::MAX,
+        }),
+    );
+    insert(
+        &mut root,
+        "vary",
+        json!({
+            "description": "How far the margins of other seeds differ from this one (%).",
+            "anyOf": [
+                { "type": "number", "minimum": 0, "maximum": 100 },
+                { "type": "string", "pattern": "^\\s*[0-9.]+\\s*%?\\s*$" },
+            ],
         }),
     );
     insert(

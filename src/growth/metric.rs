@@ -140,17 +140,6 @@ impl Metric<'_> {
         }
     }
 
-    /// A squared distance in the measure that no points are nearer than which are `distance2` apart
-    /// (squared) in the frame of the mature leaf; 0 where nothing simple can be said.
-    #[inline]
-    #[must_use]
-    pub fn at_least(&self, distance2: f64) -> f64 {
-        match self.warp {
-            None => distance2 * self.stretch.min_element().powi(2),
-            Some(_) => 0.0,
-        }
-    }
-
     /// The corners of a box around `rect` as seen from `p`.
     #[must_use]
     pub fn corners_from(&self, p: DVec2, rect: Rect) -> (DVec2, DVec2) {

@@ -63,3 +63,17 @@ pub enum GrowthError {
         source: MarginError,
     },
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_as_they_are_written() {
+        for word in GrowthType::ALL {
+            assert_eq!(word.to_string().parse(), Ok(*word));
+        }
+        let unknown = "uneven".parse::<GrowthType>().expect_err("no such word").to_string();
+        assert!(unknown.starts_with("`uneven` is none of none, marginal, "), "{unknown}");
+    }
+}

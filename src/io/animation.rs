@@ -1,6 +1,7 @@
 //! Pictures one after the other, as an animated PNG.
 //!
-//! APNG is PNG to programs that know no animations: they show the first picture.
+//! Browsers and Blender play it. APNG is PNG to programs that know no animations: they show the first
+//! picture.
 
 use crate::raster::Grid;
 

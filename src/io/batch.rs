@@ -11,6 +11,72 @@ use serde::{Deserialize, Serialize};
 
 use super::manifest::Manifest;
 
+/// Why manifests could not be read or put together.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BatchError {
+    /// The system refused.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// What was to be read.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A line that tells of no leaf.
+    #[error("{}:{line}: {source}", path.display())]
+    Line {
+        /// The manifest.
+        path: PathBuf,
+        /// Which line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        source: serde_json::Error,
+    },
+    /// A folder without a manifest of a shard.
+    #[error("{}: holds no manifest.I-of-N.jsonl", path.display())]
+    NoShards {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Shards of runs with other settings or seeds.
+    #[error(
+        "{} and {} are shards of different runs: give all of them the same leaf, settings and seeds",
+        files[0].display(), files[1].display()
+    )]
+    OtherRun {
+        /// Their manifests.
+        files: [PathBuf; 2],
+    },
+    /// Shards of a number that differs.
+    #[error("{} and {} are shards of different batches", files[0].display(), files[1].display())]
+    OtherBatch {
+        /// Their manifests.
+        files: [PathBuf; 2],
+    },
+    /// Two manifests that tell different things of one leaf.
+    #[error(
+        "{} and {} disagree about {folder}: they are of different runs",
+        files[0].display(), files[1].display()
+    )]
+    Disagree {
+        /// The manifests.
+        files: [PathBuf; 2],
+        /// The leaf's folder.
+        folder: String,
+    },
+    /// Shards that are not there.
+    #[error("{} missing", super::listed(names))]
+    Missing {
+        /// The names of their manifests.
+        names: Vec<String>,
+    },
+}
+
+fn both(first: &Path, second: &Path) -> [PathBuf; 2] {
+    [first.to_owned(), second.to_owned()]
+}
+
 /// The manifest of a batch that is not cut into shards.
 pub const BATCH_FILE: &str = "manifest.jsonl";
 
@@ -136,8 +202,8 @@ pub fn to_jsonl(lines: &[BatchLine]) -> String {
 ///
 /// # Errors
 ///
-/// A manifest that cannot be read, in words.
-pub fn others(path: &Path, made: &[BatchLine]) -> Result<Vec<BatchLine>, String> {
+/// A manifest that cannot be read.
+pub fn others(path: &Path, made: &[BatchLine]) -> Result<Vec<BatchLine>, BatchError> {
     if !path.exists() {
         return Ok(Vec::new());
     }
@@ -148,13 +214,17 @@ pub fn others(path: &Path, made: &[BatchLine]) -> Result<Vec<BatchLine>, String>
 }
 
 /// Reads a manifest.
-fn read(path: &Path) -> Result<Vec<BatchLine>, String> {
-    let fail = |problem: String| format!("{}{problem}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|error| fail(format!(": {error}")))?;
+fn read(path: &Path) -> Result<Vec<BatchLine>, BatchError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|source| BatchError::Read { path: path.to_owned(), source })?;
     text.lines()
         .enumerate()
         .map(|(i, line)| {
-            serde_json::from_str(line).map_err(|error| fail(format!(":{}: {error}", i + 1)))
+            serde_json::from_str(line).map_err(|source| BatchError::Line {
+                path: path.to_owned(),
+                line: i + 1,
+                source,
+            })
         })
         .collect()
 }
@@ -163,16 +233,16 @@ fn read(path: &Path) -> Result<Vec<BatchLine>, String> {
 ///
 /// # Errors
 ///
-/// A folder that cannot be read or holds none, in words.
-pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+/// A folder that cannot be read or holds none.
+pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, BatchError> {
     let mut files = Vec::new();
     for path in paths {
         if !path.is_dir() {
             files.push(path.clone());
             continue;
         }
-        let entries =
-            std::fs::read_dir(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let entries = std::fs::read_dir(path)
+            .map_err(|source| BatchError::Read { path: path.clone(), source })?;
         let mut found: Vec<PathBuf> = entries
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| {
@@ -181,7 +251,7 @@ pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
             })
             .collect();
         if found.is_empty() {
-            return Err(format!("{}: holds no manifest.I-of-N.jsonl", path.display()));
+            return Err(BatchError::NoShards { path: path.clone() });
         }
         found.sort();
         files.extend(found);
@@ -194,8 +264,8 @@ pub fn shard_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
 /// # Errors
 ///
 /// A manifest that cannot be read; shards of different batches or runs; a shard that is missing; two
-/// that disagree about a leaf. In words that name the files.
-pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
+/// that disagree about a leaf.
+pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, BatchError> {
     let mut merged: BTreeMap<String, (BatchLine, &Path)> = BTreeMap::new();
     let mut shards: Vec<(Shard, &Path)> = Vec::new();
     let mut run: Option<(String, &Path)> = None;
@@ -208,41 +278,27 @@ pub fn merge(files: &[PathBuf]) -> Result<Vec<BatchLine>, String> {
             if let Some(own) = line.run_sha256.take() {
                 let (first, from) = run.get_or_insert_with(|| (own.clone(), file));
                 if *first != own {
-                    return Err(format!(
-                        "{} and {} are shards of different runs: give all of them the same leaf, \
-                         settings and seeds",
-                        from.display(),
-                        file.display()
-                    ));
+                    return Err(BatchError::OtherRun { files: both(from, file) });
                 }
             }
             if let Some((other, from)) = merged.get(&line.folder)
                 && *other != line
             {
-                return Err(format!(
-                    "{} and {} disagree about {}: they are of different runs",
-                    from.display(),
-                    file.display(),
-                    line.folder
-                ));
+                return Err(BatchError::Disagree { files: both(from, file), folder: line.folder });
             }
             merged.insert(line.folder.clone(), (line, file));
         }
     }
     if let Some((first, path)) = shards.first() {
         if let Some((_, other)) = shards.iter().find(|(shard, _)| shard.count != first.count) {
-            return Err(format!(
-                "{} and {} are shards of different batches",
-                path.display(),
-                other.display()
-            ));
+            return Err(BatchError::OtherBatch { files: both(path, other) });
         }
-        let missing: Vec<String> = (0..first.count)
+        let names: Vec<String> = (0..first.count)
             .filter(|index| !shards.iter().any(|(shard, _)| shard.index == *index))
             .map(|index| Shard { index, count: first.count }.file())
             .collect();
-        if !missing.is_empty() {
-            return Err(format!("{} missing", super::listed(&missing)));
+        if !names.is_empty() {
+            return Err(BatchError::Missing { names });
         }
     }
     Ok(merged.into_values().map(|(line, _)| line).collect())

@@ -6,6 +6,7 @@
 
 use glam::DVec2;
 
+use super::decimal::decimal;
 use crate::veins::{NodeId, Venation};
 
 /// A new piece of a vein begins where its radius has changed by this share: a step that the eye
@@ -96,9 +97,7 @@ pub(super) fn pieces(venation: &Venation, cut: Cut) -> Vec<Piece> {
     pieces
 }
 
-/// To a tenth of a micrometre, without trailing zeros.
+/// To a tenth of a micrometre.
 pub(super) fn number(value: f64) -> String {
-    let printed = format!("{value:.4}");
-    let printed = printed.trim_end_matches('0').trim_end_matches('.');
-    if printed == "-0" { "0".into() } else { printed.into() }
+    decimal(value, 4)
 }

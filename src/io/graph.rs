@@ -43,7 +43,7 @@ pub struct VeinNode {
     pub radius: f64,
     /// 1 primary, 2 secondary, …
     pub order: u8,
-    /// `primary`, `secondary`, `intersecondary`, `intramarginal`, `marginal`, `exterior` or `minor`.
+    /// `primary`, `secondary`, `tertiary`, `intersecondary`, `intramarginal`, `marginal`, `exterior` or `minor`.
     pub kind: String,
 }
 

@@ -57,38 +57,6 @@ pub fn colour_png(picture: &Grid<[u8; 4]>, caption: &Caption<'_>) -> Vec<u8> {
     encode(size, picture.values().as_flattened(), &COLOUR, caption)
 }
 
-/// An animated PNG of pictures of one size, each shown for a `per_second`th of a second, for ever.
-/// Browsers and Blender play it; others show the first picture.
-#[must_use]
-pub fn film(pictures: &[Grid<[u8; 4]>], per_second: u16) -> Vec<u8> {
-    let mut file = Vec::new();
-    write_film(&mut file, pictures, per_second).expect("pictures are written to memory");
-    file
-}
-
-fn write_film(
-    file: &mut Vec<u8>,
-    pictures: &[Grid<[u8; 4]>],
-    per_second: u16,
-) -> Result<(), png::EncodingError> {
-    let count = |n: usize| u32::try_from(n).expect("fewer pictures than 32 bits count");
-    let Some(first) = pictures.first() else { return Ok(()) };
-    let mut encoder = png::Encoder::new(file, count(first.width()), count(first.height()));
-    encoder.set_color(COLOUR.colour);
-    encoder.set_depth(COLOUR.depth);
-    encoder.set_deflate_compression(COLOUR.packing.compression);
-    encoder.set_filter(COLOUR.packing.filter);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_animated(count(pictures.len()), 0)?;
-    encoder.set_frame_delay(1, per_second)?;
-    encoder.add_text_chunk("Software".into(), super::GENERATOR.into())?;
-    let mut writer = encoder.write_header()?;
-    for picture in pictures {
-        writer.write_image_data(picture.values().as_flattened())?;
-    }
-    writer.finish()
-}
-
 /// How samples lie in a file, and what they are.
 #[derive(Debug)]
 struct Layout {

@@ -11,6 +11,7 @@ use super::tables::Table;
 use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
 use super::{dxf, file_stem, glb, graph, graphml, obj, remains, svg, usda};
 use crate::margin::Margin;
+use crate::pipeline::Leaf;
 use crate::seed::Seed;
 use crate::spec::Output;
 use crate::texture::TextureSet;
@@ -40,6 +41,26 @@ pub struct LeafFiles<'a> {
     pub roughness: f64,
     /// What to write.
     pub output: &'a Output,
+}
+
+impl<'a> LeafFiles<'a> {
+    /// A leaf that was made from `leaf.spec`, whose settings as text are `spec_toml`
+    /// ([`Document::of_spec`](crate::document::Document::of_spec)) and whose output is `output`.
+    #[must_use]
+    pub fn of(leaf: &'a Leaf, spec_toml: &'a str, output: &'a Output) -> Self {
+        Self {
+            name: &leaf.spec.name,
+            title: &leaf.spec.title,
+            seed: leaf.seed,
+            margin: &leaf.grown.margin,
+            venation: &leaf.grown.venation,
+            textures: &leaf.textures,
+            spec_toml,
+            specularity: leaf.spec.relief.specularity,
+            roughness: leaf.spec.relief.roughness,
+            output,
+        }
+    }
 }
 
 /// What [`encode_leaf`] will make of a leaf of this name and size (pixels), in the same order.

@@ -8,6 +8,7 @@ pub mod animation;
 pub mod atlas;
 pub mod batch;
 pub mod card;
+mod decimal;
 mod drawing;
 pub mod dxf;
 pub mod fit;

@@ -15,6 +15,10 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, MapPaths, Side};
+use super::decimal::decimal;
+
+/// Of a metre, to a tenth of a micrometre.
+const PLACES: usize = 7;
 
 /// The geometry.
 #[must_use]
@@ -30,11 +34,11 @@ pub fn obj(card: &Card<'_>) -> String {
     for (normal, side) in (1..).zip(Side::ALL) {
         let corners = card.corners(side);
         for corner in &corners {
-            let [x, y, z] = corner.position.map(number);
+            let [x, y, z] = corner.position.map(|x| decimal(x, PLACES));
             let _ = writeln!(obj, "v {x} {y} {z}");
         }
         for corner in &corners {
-            let [u, v] = corner.uv.map(number);
+            let [u, v] = corner.uv.map(|x| decimal(x, PLACES));
             let _ = writeln!(obj, "vt {u} {v}");
         }
         let _ = writeln!(faces, "g {stem}_{side}\nusemtl {stem}_{side}", side = side.word());
@@ -59,15 +63,15 @@ pub fn mtl(card: &Card<'_>, sides: &[MapPaths; 2]) -> String {
 }
 
 fn material(card: &Card<'_>, side: Side, paths: &MapPaths) -> String {
-    let (stem, ks) = (card.stem, number(card.shine(side)));
+    let (stem, ks) = (card.stem, decimal(card.shine(side), PLACES));
     let roughness = card.microfacet_roughness(side);
     // The exponent from which Blender computes the same roughness.
     let exponent = 1000.0 * (1.0 - roughness) * (1.0 - roughness);
     let mut mtl = format!(
         "newmtl {stem}_{}\nKa 0 0 0\nKd 1 1 1\nKs {ks} {ks} {ks}\nNs {}\nPr {}\nillum 2\n",
         side.word(),
-        number(exponent),
-        number(roughness)
+        decimal(exponent, PLACES),
+        decimal(roughness, PLACES)
     );
     for (statement, path) in
         [("map_Kd", &paths.base_colour), ("map_d", &paths.opacity), ("norm", &paths.normal)]
@@ -77,11 +81,4 @@ fn material(card: &Card<'_>, side: Side, paths: &MapPaths) -> String {
         }
     }
     mtl
-}
-
-/// To a ten-millionth, never in scientific notation, without trailing zeros.
-fn number(value: f64) -> String {
-    let printed = format!("{value:.7}");
-    let printed = printed.trim_end_matches('0').trim_end_matches('.');
-    if printed == "-0" { "0".into() } else { printed.into() }
 }

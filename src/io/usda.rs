@@ -10,6 +10,10 @@
 use std::fmt::Write as _;
 
 use super::card::{Card, Corner, MapPaths, Side};
+use super::decimal::decimal;
+
+/// Of a metre, to a tenth of a micrometre.
+const PLACES: usize = 7;
 
 /// Opaque from this coverage on.
 const OPACITY_THRESHOLD: f64 = 0.5;
@@ -107,7 +111,7 @@ fn material(text: &mut String, card: &Card<'_>, side: Side, paths: &MapPaths, ro
         );
     }
     if paths.roughness.is_none() {
-        let roughness = number(card.microfacet_roughness(side));
+        let roughness = decimal(card.microfacet_roughness(side), PLACES);
         let _ = writeln!(surface, "                float inputs:roughness = {roughness}");
     }
     surface.push_str("                token outputs:surface\n            }\n\n");
@@ -160,13 +164,6 @@ fn identifier(stem: &str) -> String {
 }
 
 fn tuple(numbers: &[f64]) -> String {
-    let numbers: Vec<String> = numbers.iter().map(|&x| number(x)).collect();
+    let numbers: Vec<String> = numbers.iter().map(|&x| decimal(x, PLACES)).collect();
     format!("({})", numbers.join(", "))
-}
-
-/// To a ten-millionth, without trailing zeros.
-fn number(value: f64) -> String {
-    let printed = format!("{value:.7}");
-    let printed = printed.trim_end_matches('0').trim_end_matches('.');
-    if printed == "-0" { "0".into() } else { printed.into() }
 }

@@ -101,7 +101,8 @@ parameters! {
 /// - Anticlockwise; the first vertex is the base, at the origin, and is not repeated at the end. Of a
 ///   peltate leaf the base lies inside, and the first vertex below it on the −y axis.
 /// - The apex is a vertex on the +y axis.
-/// - Cuts (slits inside the blade) are finite lines of two points or more, inside the outline.
+/// - Cuts (slits inside the blade) are finite lines of two points or more, all of which lie inside the
+///   outline.
 /// - Landmarks stand in the order of their vertices, at most one at each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Margin {

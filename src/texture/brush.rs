@@ -98,6 +98,15 @@ impl Painted {
                 self.thickness[i] = scene.relief.thickness(&strip.ground(i)) * blade;
             }
         }
+        if scene.wounds.is_some() {
+            for i in 0..strip.len {
+                let (raised, left) = scene.relief.injured(strip.injury(i));
+                for (heights, raised) in self.heights.iter_mut().zip(raised) {
+                    heights[i] += raised;
+                }
+                self.thickness[i] *= left;
+            }
+        }
         if strip.stalked {
             self.add_stalk(scene, strip);
         }

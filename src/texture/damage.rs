@@ -71,6 +71,8 @@ pub(super) struct Injury {
     pub dark: f32,
     /// How far only its skins are left (0–1).
     pub pale: f32,
+    /// How far those are blown apart over a mine (0–1).
+    pub blown: f32,
 }
 
 /// A node of the wounds: depths in a gap, a skeletonised area, a spot, a mine and the line of frass in
@@ -124,7 +126,7 @@ impl WoundAt {
     /// edges uneven, since disease and its eaters go from cell to cell.
     #[inline]
     pub(super) fn injury(&self, areole: f32, grain: f32, per_mm: f32) -> Injury {
-        let Injury { mut brown, mut dark, mut pale } = self.injury;
+        let Injury { mut brown, mut dark, mut pale, .. } = self.injury;
         brown += 1.4 * brown * (1.0 - brown) * (areole + 0.6 * grain);
         // Half a texel of softness, or as much as tissue has.
         let per_mm = per_mm.min(MOST_SHARP_PER_MM);
@@ -139,7 +141,7 @@ impl WoundAt {
         brown = brown.max(spot * (1.0 - 0.5 * dry));
         dark = dark.max(spot * (1.0 - smooth(0.1, 0.34, depth)));
         pale = pale.max(spot * dry);
-        Injury { brown: brown.clamp(0.0, 1.0), dark, pale: pale.clamp(0.0, 1.0) }
+        Injury { brown: brown.clamp(0.0, 1.0), dark, pale: pale.clamp(0.0, 1.0), blown: mined }
     }
 }
 
@@ -238,6 +240,7 @@ impl WoundRow<'_> {
                 brown: brown.max(0.85 * rim * rim).clamp(0.0, 1.0),
                 dark: rim.powi(6),
                 pale: pale.clamp(0.0, 1.0),
+                blown: 0.0,
             },
         }
     }

@@ -7,9 +7,8 @@
 use super::dilation::Empty;
 use super::map::{MapKind, MapSet};
 use super::normals;
-use super::samples::{in_all, words};
+use super::samples::{in_all, words, words_of};
 use super::side::SideMaps;
-use crate::parallel::for_each_piece;
 use crate::raster::Grid;
 
 /// The planes of one side with 16 bits a channel; each has its map's size, or none.
@@ -60,22 +59,16 @@ impl Deep {
 
     /// The bytes of a map, row by row, high bytes first; `None` for one that has no plane here.
     fn samples(&self, map: MapKind) -> Option<Vec<u8>> {
-        fn plane<T: Copy + Sync, const N: usize>(
-            plane: &Grid<T>,
-            channels: impl Fn(T) -> [u16; N] + Sync,
-        ) -> Vec<u8> {
-            words(plane.values().len(), |i| channels(plane.values()[i]))
-        }
         let planes = [&self.occlusion, &self.roughness, &self.transmission].map(Grid::values);
         let [occlusion, roughness, transmission] = planes;
         Some(match map {
-            MapKind::BaseColour => plane(&self.base_colour, |texel| texel),
-            MapKind::Opacity => plane(&self.base_colour, |[.., alpha]| [alpha; 2]),
-            MapKind::Roughness => plane(&self.roughness, |rough| [rough]),
-            MapKind::Gloss => plane(&self.roughness, |rough| [u16::MAX - rough]),
-            MapKind::AmbientOcclusion => plane(&self.occlusion, |open| [open]),
-            MapKind::Translucency => plane(&self.translucency, |texel| texel),
-            MapKind::VeinMask => plane(&self.vein_mask, |cover| [cover]),
+            MapKind::BaseColour => words_of(&self.base_colour, |texel| texel),
+            MapKind::Opacity => words_of(&self.base_colour, |[.., alpha]| [alpha; 2]),
+            MapKind::Roughness => words_of(&self.roughness, |rough| [rough]),
+            MapKind::Gloss => words_of(&self.roughness, |rough| [u16::MAX - rough]),
+            MapKind::AmbientOcclusion => words_of(&self.occlusion, |open| [open]),
+            MapKind::Translucency => words_of(&self.translucency, |texel| texel),
+            MapKind::VeinMask => words_of(&self.vein_mask, |cover| [cover]),
             MapKind::MaskMap => {
                 words(in_all(&planes[..2]), |i| [0, occlusion[i], 1 << 15, u16::MAX - roughness[i]])
             }
@@ -120,23 +113,15 @@ impl SideMaps {
 
     fn fine_normals(&self, per_texel: f32, y_down: bool) -> Vec<u8> {
         let size = self.size();
-        let mut samples = vec![0; 6 * size * size];
-        for_each_piece(&mut samples, 6 * size, &|y, row| {
-            for (x, texel) in row.as_chunks_mut::<6>().0.iter_mut().enumerate() {
-                let covered = self.base_colour[(x, y)][3] > 0;
-                let (dx, dy) = if covered {
-                    normals::slopes(&self.height, x, y, per_texel)
-                } else {
-                    (0.0, 0.0)
-                };
-                let [nx, ny, nz] = normals::from_slopes(dx, dy);
-                let [nx, ny, nz] = [nx, ny, nz].map(|n| (n * 32767.5 + 32768.0) as u16);
-                let ny = if y_down { u16::MAX - ny } else { ny };
-                let words = [nx, ny, nz].map(u16::to_be_bytes);
-                texel.copy_from_slice(words.as_flattened());
-            }
-        });
-        samples
+        words(size * size, |i| {
+            let (x, y) = (i % size, i / size);
+            let covered = self.base_colour[(x, y)][3] > 0;
+            let (dx, dy) =
+                if covered { normals::slopes(&self.height, x, y, per_texel) } else { (0.0, 0.0) };
+            let normal = normals::from_slopes(dx, dy);
+            let [nx, ny, nz] = normal.map(|n| (n * 32767.5 + 32768.0) as u16);
+            [nx, if y_down { u16::MAX - ny } else { ny }, nz]
+        })
     }
 }
 

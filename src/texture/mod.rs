@@ -41,7 +41,7 @@ mod tissue;
 
 use crate::margin::Margin;
 use crate::observer::{Observer, Progress};
-use crate::parameter::{parameters, words};
+use crate::parameter::{OutsideLimits, Parameters, parameters, words};
 use crate::raster::Grid;
 use crate::seed::Seed;
 use crate::spelling;
@@ -99,9 +99,6 @@ pub struct Paint<'a> {
     pub default_speckles: u64,
 }
 
-/// The limits of `texture.size_px`.
-const SIZES_PX: std::ops::RangeInclusive<u64> = 16..=16_384;
-
 /// Paints both sides of a leaf. The same bytes on any number of threads.
 ///
 /// # Errors
@@ -114,10 +111,7 @@ pub fn paint(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<TextureSet, TextureError> {
-    let size = paint.texture.size_px;
-    if !SIZES_PX.contains(&size) {
-        return Err(TextureError::Size { size });
-    }
+    check(paint)?;
     let mut report = |step| {
         observer.report(Progress { stage: "painting", step, steps: 3, nodes: 0, sources: 0 });
     };
@@ -162,6 +156,20 @@ pub fn paint(
     Ok(set)
 }
 
+/// Refuses settings that a program made and under which nothing could be painted.
+fn check(paint: &Paint<'_>) -> Result<(), TextureError> {
+    let groups: [(&str, Option<OutsideLimits>); 6] = [
+        ("texture", paint.texture.outside_limits()),
+        ("petiole", paint.petiole.outside_limits()),
+        ("colour", paint.colour.outside_limits()),
+        ("state", paint.state.outside_limits()),
+        ("damage", paint.damage.outside_limits()),
+        ("relief", paint.relief.outside_limits()),
+    ];
+    let mut found = groups.into_iter().filter_map(|(group, outside)| Some(outside?.within(group)));
+    found.next().map_or(Ok(()), |outside| Err(TextureError::Setting(outside)))
+}
+
 /// The pictures that are made from the others.
 fn finish(paint: &Paint<'_>, set: &mut TextureSet, noise: u32) {
     let per_mm = set.frame.pixels_per_mm(set.front.size()) as f32;
@@ -187,12 +195,9 @@ fn finish(paint: &Paint<'_>, set: &mut TextureSet, noise: u32) {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextureError {
-    /// The side is too short or too long.
-    #[error("texture.size_px = {size} must lie in 16..=16384")]
-    Size {
-        /// As given.
-        size: u64,
-    },
+    /// A setting outside its limits.
+    #[error("{} = {} {}", .0.key, .0.value, .0.problem())]
+    Setting(OutsideLimits),
     /// A map that there is not.
     #[error("output.maps: `{word}` {}", known_maps(word))]
     Map {
@@ -213,7 +218,8 @@ fn known_maps(word: &str) -> String {
 ///
 /// # Guarantees
 ///
-/// - All maps are squares of one size; the back is mirrored left to right against the front.
+/// - All maps but the pictures for people are squares of one size; the back is mirrored left to right
+///   against the front.
 /// - Colour is sRGB with straight alpha, dilated under alpha 0.
 /// - Normals are unit length before rounding, z > 0.
 #[derive(Debug, Clone, PartialEq)]

@@ -155,7 +155,8 @@ impl Stalk {
     ) -> Option<Vec<StalkAt>> {
         let per_mm = frame.pixels_per_mm(size);
         let mm = 1.0 / per_mm as f32;
-        let mut texels = None;
+        // And how far from the axis each texel is, squared.
+        let mut texels: Option<(Vec<StalkAt>, Vec<f32>)> = None;
         for i in 1..self.points.len() {
             let capsule = Capsule {
                 a: frame.pixel_from_leaf(self.points[i - 1], size).as_vec2(),
@@ -166,25 +167,30 @@ impl Stalk {
             let (from, to) = (self.along[i - 1] as f32, self.along[i] as f32);
             let [columns, lines] = capsule.pixels(capsule.widest() + 0.5, size, rows.clone());
             for y in lines {
-                let texels =
-                    texels.get_or_insert_with(|| vec![StalkAt::default(); size * rows.len()]);
+                let (texels, nearest) = texels.get_or_insert_with(|| {
+                    let count = size * rows.len();
+                    (vec![StalkAt::default(); count], vec![f32::INFINITY; count])
+                });
                 for x in columns.clone() {
                     let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                     let (distance2, t) = capsule.nearest(centre);
-                    let radius = capsule.radius(t);
-                    let cover = stroke_share(distance2.sqrt(), radius, 0.5);
-                    let texel = &mut texels[(y - rows.start) * size + x];
-                    let dome = (radius * radius - distance2).max(0.0).sqrt() * mm;
-                    // Neighbouring pieces overlap; the one that is highest here is the nearest.
-                    if dome > texel.dome || (texel.dome == 0.0 && cover > texel.cover) {
-                        texel.along = from + (to - from) * t;
-                        (texel.radius, texel.dome) = (radius * mm, dome);
+                    let index = (y - rows.start) * size + x;
+                    // Neighbouring pieces overlap: the wide round end of a short stalk lies over all of it.
+                    if distance2 >= nearest[index] {
+                        continue;
                     }
-                    texel.cover = texel.cover.max(cover);
+                    nearest[index] = distance2;
+                    let radius = capsule.radius(t);
+                    texels[index] = StalkAt {
+                        cover: stroke_share(distance2.sqrt(), radius, 0.5),
+                        radius: radius * mm,
+                        dome: (radius * radius - distance2).max(0.0).sqrt() * mm,
+                        along: from + (to - from) * t,
+                    };
                 }
             }
         }
-        texels
+        texels.map(|(texels, _)| texels)
     }
 }
 

@@ -7,6 +7,8 @@
 
 mod amounts;
 mod hsv;
+mod mixer;
+mod pace;
 mod season;
 
 pub use amounts::{Amounts, PigmentSpec};
@@ -129,7 +131,7 @@ impl Hsv {
 }
 
 /// What colour is made of, at one texel.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tissue {
     /// The guide.
     pub place: Place,
@@ -220,7 +222,7 @@ impl Tissue {
 #[derive(Debug)]
 pub(super) enum Pigments {
     /// By amounts.
-    Amounts(Box<amounts::Mixer>),
+    Amounts(Box<mixer::Mixer>),
     /// As chosen, front and back.
     Chosen(Box<hsv::Leaf>),
 }
@@ -236,7 +238,7 @@ impl Pigments {
     ) -> Self {
         match spec.model {
             ColourModel::Pigments => {
-                Self::Amounts(Box::new(amounts::Mixer::new(spec, state, petiole, petiole_reach)))
+                Self::Amounts(Box::new(mixer::Mixer::new(spec, state, petiole, petiole_reach)))
             }
             ColourModel::Hsv => {
                 Self::Chosen(Box::new(hsv::Leaf::new(spec, state, petiole, petiole_reach, hurt)))

@@ -20,6 +20,9 @@ const SUN_LIGHT: f32 = 1.05;
 const SKY_LIGHT: f32 = 0.32;
 const BEHIND: f32 = 3.2;
 
+/// How bright a leaf against the light is at the most, on average (linear, the brightest channel).
+const EXPOSED: f32 = 0.7;
+
 /// Reflectance of a leaf's surface at right angles.
 const F0: f32 = 0.037;
 
@@ -33,8 +36,8 @@ pub(super) fn lit(front: &SideMaps, back: &SideMaps) -> Grid<[u8; 3]> {
     let step = size.div_ceil(LARGEST_PX);
     let side = size / step;
     let linear: Vec<f32> = (0..256).map(|byte| decoded(f64::from(byte) / 255.0) as f32).collect();
-    let views: [(&SideMaps, View); 3] =
-        [(front, View::Lit), (back, View::Lit), (front, View::Against)];
+    let against = View::Against { behind: exposed(front, &linear) };
+    let views: [(&SideMaps, View); 3] = [(front, View::Lit), (back, View::Lit), (front, against)];
     let mut picture = Grid::filled(3 * side, side, [0; 3]);
     for_each_piece(picture.values_mut(), 3 * side, &|y, row| {
         for (panel, (maps, view)) in views.iter().enumerate() {
@@ -53,10 +56,26 @@ pub(super) fn lit(front: &SideMaps, back: &SideMaps) -> Grid<[u8; 3]> {
     picture
 }
 
+/// How bright the light behind a leaf is to be, so that of a yellow leaf more is seen than its outline.
+fn exposed(maps: &SideMaps, linear: &[f32]) -> f32 {
+    let seen = maps.translucency.values().iter().zip(maps.base_colour.values());
+    let whole = seen.filter(|(_, colour)| colour[3] == u8::MAX);
+    let brightest =
+        |through: &[u8; 3]| linear[usize::from(through.iter().copied().max().unwrap_or(0))];
+    let (sum, count) = whole.fold((0.0, 0_u32), |(sum, count), (through, _)| {
+        (sum + f64::from(brightest(through)), count + 1)
+    });
+    let mean = (sum / f64::from(count.max(1))) as f32;
+    BEHIND.min(EXPOSED / mean.max(1e-3))
+}
+
 #[derive(Debug, Clone, Copy)]
 enum View {
     Lit,
-    Against,
+    /// With so much light behind the leaf.
+    Against {
+        behind: f32,
+    },
 }
 
 impl View {
@@ -65,7 +84,7 @@ impl View {
         let [r, g, b, alpha] = maps.base_colour.values()[at];
         let behind = match self {
             Self::Lit => PAPER,
-            Self::Against => DUSK,
+            Self::Against { .. } => DUSK,
         };
         if alpha == 0 {
             return behind;
@@ -81,10 +100,10 @@ impl View {
                 let shine = gloss + F0 * SKY_LIGHT * open * (1.0 - roughness);
                 colour.map(|c| c * (facing / SUN[2] * SUN_LIGHT * 0.8 + SKY_LIGHT * open) + shine)
             }
-            Self::Against => {
+            Self::Against { behind } => {
                 let through = maps.translucency.values()[at].map(|b| linear[usize::from(b)]);
                 let facing = 0.75 + 0.25 * normal[2];
-                std::array::from_fn(|c| through[c] * BEHIND * facing + colour[c] * SKY_LIGHT * open)
+                std::array::from_fn(|c| through[c] * behind * facing + colour[c] * SKY_LIGHT * open)
             }
         };
         let share = f32::from(alpha) / 255.0;

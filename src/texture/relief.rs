@@ -3,6 +3,7 @@
 //! Source: Foster, section 2.3.6, for what is high and low, and the bump map; amplitudes follow
 //! real leaves (a groove of 0.3–0.5 vein radii above, a cord of 1–1.5 below, quilting of 10–50 µm).
 
+use super::damage::Injury;
 use super::fields::VeinAt;
 use super::guide::Place;
 use super::petiole::StalkAt;
@@ -61,6 +62,11 @@ const GRAIN_HEIGHT_MM: f32 = 0.012;
 /// The tissue has swollen half way at these distances from a larger, and from any vein (mm).
 const SWELL_MM: [f32; 2] = [1.6, 0.35];
 
+/// How far dead tissue shrinks, a rim stands up and a mine is blown up, as shares of the lamina.
+const SHRUNK: f32 = 0.12;
+const RIM: f32 = 0.22;
+const BLISTER: f32 = 0.25;
+
 impl Relief {
     /// `widest` is the greatest vein radius, `root` that of the midrib at the petiole, `stalk` that
     /// of the petiole (mm); `shown` is how much of the areoles the texels can show (0–1).
@@ -114,6 +120,17 @@ impl Relief {
         let groove = self.front_depth * (0.7 * vein.groove + 0.3 * vein.dome);
         let cord = self.back_height * (0.3 * vein.groove + 0.7 * vein.dome);
         [quilt + areole + rough - groove, cord - 0.7 * quilt - areole + rough]
+    }
+
+    /// What injuries add to the heights of both sides, and how much of the lamina they leave (mm, share):
+    /// dead and dry tissue shrinks, a mine is a blister over little of it, and what is walled off is a rim.
+    #[inline(always)]
+    pub(super) fn injured(&self, injury: &Injury) -> ([f32; 2], f32) {
+        let shrunk = -SHRUNK * self.lamina * injury.brown.max(injury.pale - injury.blown);
+        let rim = RIM * self.lamina * injury.dark;
+        let blister = BLISTER * self.lamina * injury.blown;
+        let left = (1.0 - 0.4 * injury.brown) * (1.0 - 0.6 * injury.pale);
+        ([shrunk + rim + blister, shrunk + rim + 0.5 * blister], left)
     }
 
     /// Front and back of the petiole, which runs into the groove and the cord of the midrib.

@@ -56,6 +56,15 @@ pub(super) fn words<const N: usize>(
     bytes
 }
 
+/// The bytes of a plane of which each texel has N words.
+pub(super) fn words_of<T: Copy + Sync, const N: usize>(
+    plane: &Grid<T>,
+    channels: impl Fn(T) -> [u16; N] + Sync,
+) -> Vec<u8> {
+    let plane = plane.values();
+    words(plane.len(), |i| channels(plane[i]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

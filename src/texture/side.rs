@@ -13,7 +13,8 @@ pub(super) const FLAT: [u8; 3] = [128, 128, 255];
 ///
 /// # Guarantees
 ///
-/// Planes that were asked for are squares of one size; the others are empty.
+/// Planes that were asked for are squares of one size, but for the pictures for people, `enhancement` and
+/// `preview`; the others are empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SideMaps {
     /// Base colour, sRGB, and coverage as straight alpha. Under alpha 0 the colour is that of the

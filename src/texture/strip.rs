@@ -314,6 +314,11 @@ impl Strip {
         }
     }
 
+    /// What has been done to a texel.
+    pub(super) fn injury(&self, i: usize) -> &Injury {
+        &self.injured[i]
+    }
+
     /// How dry the tissue is, 0–1.
     #[inline(always)]
     pub(super) fn dryness(&self, i: usize) -> f32 {

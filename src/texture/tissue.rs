@@ -35,17 +35,8 @@ pub(super) fn smooth(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Cells that a place looks at: its own and the eight around it.
-const AROUND: usize = 9;
-
 /// Texels that are compared with the same points at a time.
 const BLOCK: usize = 8;
-
-/// A point seen from the corner of a cell, the number of its areole, and nothing: as much as is moved at once.
-type Seen = [f32; 4];
-
-/// Those around a cell, and as many more as make every four bits name one.
-type Around = [Seen; 16];
 
 /// One net over some rows: the points of all its cells there.
 #[derive(Debug)]
@@ -82,20 +73,6 @@ impl Net {
         }
     }
 
-    /// The points around a cell, seen from its corner.
-    #[inline(always)]
-    fn around(&self, x: i32, y: i32) -> Around {
-        let (column, row) = ((x - self.first[0]) as usize, (y - self.first[1]) as usize);
-        let mut points = [[0.0; 4]; 16];
-        for (dy, three) in points[..AROUND].chunks_exact_mut(3).enumerate() {
-            let from = &self.points[(row + dy - 1) * self.across + column - 1..][..3];
-            for (dx, (point, [px, py, tone])) in three.iter_mut().zip(from).enumerate() {
-                *point = [px + dx as f32 - 1.0, py + dy as f32 - 1.0, *tone, 0.0];
-            }
-        }
-        points
-    }
-
     /// The net at places (mm) between the corners it was prepared for: distance to the border of the
     /// areole (mm), and a number of the areole, 0–1.
     #[inline(always)]
@@ -114,72 +91,91 @@ impl Net {
             (cells[0][i], cells[1][i]) = (column, row);
             (within[0][i], within[1][i]) = (x - column as f32, y - row as f32);
         }
-        let (mut first, mut second) = ([[0.0; 4]; LANES + BLOCK], [[0.0; 4]; LANES + BLOCK]);
+        let mut found = [[0.0_f32; LANES + BLOCK]; 3];
         let mut start = 0;
         while start < LANES {
-            let cell = (cells[0][start], cells[1][start]);
+            let cell = [cells[0][start], cells[1][start]];
             let mut end = start + 1;
-            while end < LANES && (cells[0][end], cells[1][end]) == cell {
+            while end < LANES && [cells[0][end], cells[1][end]] == cell {
                 end += 1;
             }
-            let points = self.around(cell.0, cell.1);
+            let points = self.around(cell);
             // A block may reach past the end: what follows is overwritten by the next run.
             for block in (start..end).step_by(BLOCK) {
                 let at = |axis: usize| {
                     <&[f32; BLOCK]>::try_from(&within[axis][block..block + BLOCK])
                         .expect("a slice of that length")
                 };
-                let [nearest, next] = two_nearest(simd, &points, at(0), at(1));
-                for l in 0..BLOCK {
-                    first[block + l] = points[nearest[l] as usize & 15];
-                    second[block + l] = points[next[l] as usize & 15];
+                let seen = nearest_two(simd, points, at(0), at(1));
+                for (found, seen) in found.iter_mut().zip(seen) {
+                    found[block..block + BLOCK].copy_from_slice(&seen);
                 }
             }
             start = end;
         }
+        let [behind, apart2, number] = &found;
         for i in 0..LANES {
-            let squared = |x: f32, y: f32| {
-                let (dx, dy) = (x - within[0][i], y - within[1][i]);
-                dx * dx + dy * dy
-            };
-            let ([px, py, areole, _], [qx, qy, ..]) = (first[i], second[i]);
-            let (dx, dy) = (px - qx, py - qy);
-            let apart = (dx * dx + dy * dy).sqrt().max(1e-3);
-            let behind = squared(qx, qy) - squared(px, py);
-            border[i] = (behind / (2.0 * apart)).max(0.0) * self.size;
-            tone[i] = areole;
+            border[i] = behind[i] / (2.0 * apart2[i].sqrt().max(1e-3)) * self.size;
+            tone[i] = number[i];
         }
+    }
+
+    /// The points of a cell and of the eight around it, row by row.
+    #[inline(always)]
+    fn around(&self, [x, y]: [i32; 2]) -> [&[[f32; 3]; 3]; 3] {
+        let (column, row) = ((x - self.first[0]) as usize, (y - self.first[1]) as usize);
+        std::array::from_fn(|dy| {
+            let from = (row + dy - 1) * self.across + column - 1;
+            <&[[f32; 3]; 3]>::try_from(&self.points[from..from + 3]).expect("three points")
+        })
     }
 }
 
-/// Which of the points are nearest and second nearest to some places: the index in the last four bits.
+/// Of the points around a cell the two nearest to some places in it (cell sizes): by how much the squared
+/// distance to the second is greater, how far the two are apart, squared, and the number of the first.
 ///
-/// Without a branch, which would be mispredicted at every other point: positive floats sort as their
-/// bits do, and the last bits carry the index.
+/// Without a branch, which would be mispredicted at every other point.
 #[inline(always)]
-fn two_nearest<S: Simd>(
+fn nearest_two<S: Simd>(
     simd: S,
-    points: &Around,
+    points: [&[[f32; 3]; 3]; 3],
     x: &[f32; BLOCK],
     y: &[f32; BLOCK],
-) -> [[u32; BLOCK]; 2] {
+) -> [[f32; BLOCK]; 3] {
     const { assert!(BLOCK.is_multiple_of(S::F32_LANES), "blocks are made of whole vectors") };
-    let mut found = [[u32::MAX; BLOCK]; 2];
-    let [nearest, next] = found.each_mut().map(|keys| S::as_mut_simd_u32s(keys).0.iter_mut());
-    let places = S::as_simd_f32s(x).0.iter().zip(S::as_simd_f32s(y).0);
-    let (distance_bits, one) = (simd.splat_u32s(!15), simd.splat_u32s(1));
-    for ((first, second), (&x, &y)) in nearest.zip(next).zip(places) {
-        let mut index = simd.splat_u32s(0);
-        for &[px, py, ..] in &points[..AROUND] {
-            let dx = simd.sub_f32s(simd.splat_f32s(px), x);
-            let dy = simd.sub_f32s(simd.splat_f32s(py), y);
-            let squared = simd.add_f32s(simd.mul_f32s(dx, dx), simd.mul_f32s(dy, dy));
-            let bits = simd.and_u32s(simd.transmute_u32s_f32s(squared), distance_bits);
-            let key = simd.or_u32s(bits, index);
-            index = simd.add_u32s(index, one);
-            *second = simd.min_u32s(*second, simd.max_u32s(*first, key));
-            *first = simd.min_u32s(*first, key);
+    let mut found = [[0.0; BLOCK]; 3];
+    let [behind, apart2, number] = found.each_mut().map(|all| S::as_mut_simd_f32s(all).0);
+    let (x, y) = (S::as_simd_f32s(x).0, S::as_simd_f32s(y).0);
+    let (zero, far) = (simd.splat_f32s(0.0), simd.splat_f32s(f32::INFINITY));
+    for k in 0..x.len() {
+        // Squared distance and direction of both.
+        let (mut near, mut near_x, mut near_y) = (far, zero, zero);
+        let (mut next, mut next_x, mut next_y) = (far, zero, zero);
+        let mut areole = zero;
+        for (row, points) in points.into_iter().enumerate() {
+            let y = simd.sub_f32s(y[k], simd.splat_f32s(row as f32 - 1.0));
+            for (column, &[px, py, tone]) in points.iter().enumerate() {
+                let x = simd.sub_f32s(x[k], simd.splat_f32s(column as f32 - 1.0));
+                let dx = simd.sub_f32s(simd.splat_f32s(px), x);
+                let dy = simd.sub_f32s(simd.splat_f32s(py), y);
+                let squared = simd.add_f32s(simd.mul_f32s(dx, dx), simd.mul_f32s(dy, dy));
+                let is_near = simd.less_than_f32s(squared, near);
+                let is_next = simd.less_than_f32s(squared, next);
+                let or_next = |own, old, first| {
+                    simd.select_f32s(is_near, first, simd.select_f32s(is_next, own, old))
+                };
+                next = simd.min_f32s(next, simd.max_f32s(near, squared));
+                (next_x, next_y) = (or_next(dx, next_x, near_x), or_next(dy, next_y, near_y));
+                near = simd.min_f32s(near, squared);
+                near_x = simd.select_f32s(is_near, dx, near_x);
+                near_y = simd.select_f32s(is_near, dy, near_y);
+                areole = simd.select_f32s(is_near, simd.splat_f32s(tone), areole);
+            }
         }
+        behind[k] = simd.sub_f32s(next, near);
+        let (dx, dy) = (simd.sub_f32s(near_x, next_x), simd.sub_f32s(near_y, next_y));
+        apart2[k] = simd.add_f32s(simd.mul_f32s(dx, dx), simd.mul_f32s(dy, dy));
+        number[k] = areole;
     }
     found
 }

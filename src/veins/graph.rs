@@ -44,8 +44,8 @@ pub struct Rank {
 ///
 /// # Guarantees
 ///
-/// - A parent comes before its children, so the parent edges are a forest, whose roots lie at the
-///   petiole.
+/// - A parent comes before its children, so the parent edges are a forest. As grown its roots lie at the
+///   petiole; what is left of a damaged leaf has others.
 /// - No two nodes at one position.
 /// - Joins name two different existing nodes, neither the parent of the other.
 /// - A node with a rank grows out of one with a rank of no higher order.

@@ -62,8 +62,7 @@ pub fn grow_from(
     observer: &mut dyn Observer,
 ) -> Result<Venation, VeinError> {
     spec::check(spec)?;
-    let spec = &spec.scaled();
-    spec::check(spec)?;
+    let spec = &spec::scaled(spec)?;
     let raw = match spec.algorithm {
         Algorithm::AuxinOpen | Algorithm::AuxinClosed => auxin(spec, blade, roots, seed, observer)?,
         Algorithm::Particles => trails(spec, blade, roots, seed, observer)?,

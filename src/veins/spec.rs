@@ -162,6 +162,22 @@ pub(super) fn check(spec: &VeinSpec) -> Result<(), VeinError> {
     Ok(())
 }
 
+/// The settings at their scale, fit to be grown from.
+pub(super) fn scaled(spec: &VeinSpec) -> Result<VeinSpec, VeinError> {
+    let scaled = spec.scaled();
+    if let Some(outside) = scaled.outside_limits() {
+        let problem = format!(
+            "makes veins.{} {}, which {}; take a scale nearer to 1, or change that too",
+            outside.key,
+            outside.value,
+            outside.problem()
+        );
+        return Err(VeinError::setting("veins.scale", spec.scale, problem));
+    }
+    check(&scaled)?;
+    Ok(scaled)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

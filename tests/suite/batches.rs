@@ -91,6 +91,60 @@ fn merging_says_what_is_missing_and_refuses_shards_of_other_runs() {
 }
 
 #[test]
+fn a_shard_whose_leaves_all_failed_holds_up_no_other() {
+    let folder = fresh();
+    let batch = ["generate", "beech", "--seeds", "1,2", "-o", "out"];
+    // Veins would step over the sources.
+    let wrong = ["--set", "veins.node_step_mm=5", "--set", "veins.kill_distance_mm=1"];
+    for shard in ["0/2", "1/2"] {
+        let more = ["--shard", shard];
+        let (code, listed, message) =
+            run(folder.path(), &[&small(&batch)[..], &wrong, &more].concat());
+        assert_eq!(code, 2, "{message}");
+        assert!(listed.contains("-of-0002.jsonl"), "{listed}");
+    }
+    let message = fail(folder.path(), 4, &["merge", "out"]);
+    assert!(message.contains("2 of 2 leaves failed"), "{message}");
+    let merged = std::fs::read_to_string(folder.path().join("out/manifest.jsonl")).unwrap();
+    assert_eq!(merged.matches("veins.kill_distance_mm").count(), 2, "{merged}");
+}
+
+#[test]
+fn a_manifest_that_cannot_be_added_to_is_told_of_before_anything_is_grown() {
+    let folder = fresh();
+    std::fs::create_dir(folder.path().join("out")).unwrap();
+    std::fs::write(folder.path().join("out/manifest.jsonl"), "no line of ours\n").unwrap();
+    let batch = ["generate", "beech", "--seeds", "1-2", "-o", "out"];
+    for more in [&[][..], &["-n"], &["--force"]] {
+        let message = fail(folder.path(), 2, &[&small(&batch)[..], more].concat());
+        assert!(message.contains("manifest.jsonl:1: "), "{message}");
+    }
+    assert_eq!(contents(folder.path()).len(), 1);
+}
+
+#[test]
+fn a_list_of_one_seed_is_a_list() {
+    let folder = fresh();
+    for seeds in ["5", "7"] {
+        succeed(folder.path(), &small(&["generate", "beech", "--seeds", seeds, "-o", "out"]));
+    }
+    let manifest = std::fs::read_to_string(folder.path().join("out/manifest.jsonl")).unwrap();
+    let folders: Vec<Value> =
+        manifest.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()).collect();
+    let names: Vec<_> = folders.iter().map(|line| line["folder"].as_str().unwrap()).collect();
+    assert_eq!(names, ["fagus-sylvatica_s0005", "fagus-sylvatica_s0007"]);
+}
+
+#[test]
+fn every_seed_is_read_back_from_the_settings() {
+    let folder = fresh();
+    let last = u64::MAX.to_string();
+    succeed(folder.path(), &small(&["generate", "beech", "--seed", &last, "-o", "a"]));
+    succeed(folder.path(), &["generate", "a/leaf.toml", "-o", "b"]);
+    support::assert_same(&folder.path().join("a"), &folder.path().join("b"));
+}
+
+#[test]
 fn a_leaf_is_made_again_when_what_its_files_hold_would_change() {
     let folder = fresh();
     let batch = ["generate", "beech", "--seeds", "1-2", "-o", "out", "--skip-existing"];

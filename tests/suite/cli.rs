@@ -191,6 +191,13 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
         (&["generate", "name.toml"], "name.toml:2: name = `../up`"),
         (&["generate", "beech", "--json", "--progress", "openjd"], "--progress openjd"),
         (&["atlas", "beech", "--seeds", "1-9000", "--size", "512", "-n"], "9000 leaves do not fit"),
+        (&["atlas", "beech", "--padding", "18446744073709551615", "-n"], "smaller --padding"),
+        (&["compare", "beech", "--by", "season", "--seeds", "1-3", "-o", "s.png"], "--seeds"),
+        (
+            &["compare", "beech", "--by", "season", "--frames", "2", "-o", "s.png", "--csv", "s"],
+            "--csv: a film has no measures",
+        ),
+        (&["generate", "beech", "--set", "veins.scale=0.1"], "veins.scale = 0.1 makes veins."),
         (&["generate", "."], "."),
         (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),

@@ -88,6 +88,18 @@ fn a_fitted_leaf_is_a_file_and_a_picture_and_varies_with_the_seed() {
 
 /// Insects have opened its outline, so that what is left is hardly a leaf's.
 #[test]
+fn a_scan_is_not_overwritten_by_what_is_made_of_it() {
+    let folder = fresh();
+    let scan = folder.path().join("scan.png");
+    std::fs::copy(fixture("Passiflora_alata_1_8.png"), &scan).expect("a scan");
+    let before = std::fs::read(&scan).expect("a scan");
+    let message = fail(folder.path(), 2, &["fit", "scan.png", "-o", "scan.toml", "--force"]);
+    assert!(message.contains("scan.png: is read"), "{message}");
+    assert_eq!(std::fs::read(&scan).expect("a scan"), before);
+    assert!(!folder.path().join("scan.toml").exists());
+}
+
+#[test]
 fn a_poor_fit_says_so() {
     let folder = fresh();
     let torn = fixture("holes.png");

@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 use palette::{FromColor, Lab, Srgb};
+use rayon::prelude::*;
 use venation::geometry::polygon::signed_area;
 use venation::observer::Silent;
 use venation::pipeline;
@@ -127,10 +128,20 @@ fn tissue_along_the_larger_veins_stays_green_longest() {
 
 #[test]
 fn sixty_frames_of_a_season_move_no_texel_by_more_than_eight() {
+    let mut films = Vec::new();
     for (anthocyanin, r#type) in [(0.5, ColourType::Uniform), (28.0, ColourType::FromEdges)] {
         let mut settings = Settings::of_size(96);
         settings.colour.pigments.autumn.anthocyanin_ug_cm2 = anthocyanin;
         settings.colour.r#type = r#type;
+        films.push((format!("{type} with {anthocyanin} of red"), settings));
+    }
+    for preset in presets::PRESETS {
+        let spec = preset.document().expect("valid").resolve(Seed(1)).expect("valid");
+        let mut settings = Settings::of_size(96);
+        settings.colour = spec.colour;
+        films.push((preset.name.to_owned(), settings));
+    }
+    films.into_par_iter().for_each(|(name, mut settings)| {
         let mut last: Option<TextureSet> = None;
         for frame in 0..60 {
             settings.state.season = f64::from(frame) / 59.0;
@@ -139,17 +150,17 @@ fn sixty_frames_of_a_season_move_no_texel_by_more_than_eight() {
                 for (a, b) in [(&last.front, &set.front), (&last.back, &set.back)] {
                     for (a, b) in a.base_colour.values().iter().zip(b.base_colour.values()) {
                         let jump = (0..4).map(|c| a[c].abs_diff(b[c])).max();
-                        assert!(jump <= Some(8), "frame {frame}: {a:?} {b:?}");
+                        assert!(jump <= Some(8), "{name}, frame {frame}: {a:?} {b:?}");
                     }
                     for (a, b) in a.translucency.values().iter().zip(b.translucency.values()) {
                         let jump = (0..3).map(|c| a[c].abs_diff(b[c])).max();
-                        assert!(jump <= Some(8), "frame {frame}, through: {a:?} {b:?}");
+                        assert!(jump <= Some(8), "{name}, frame {frame}, through: {a:?} {b:?}");
                     }
                 }
             }
             last = Some(set);
         }
-    }
+    });
 }
 
 #[test]
@@ -380,6 +391,32 @@ fn tears_cut_nothing_off() {
         assert!(left > 0.93 && left < 0.995, "{left} of the blade are left");
         assert_eq!(torn.rings.len(), 1, "neither holes nor pieces");
     }
+}
+
+#[test]
+fn mines_are_blisters_over_thin_tissue_and_spots_have_a_rim() {
+    let mut settings = Settings::of_size(512);
+    let sound = painted(&settings);
+    settings.damage = DamageSpec { mines: 1.0, ..DamageSpec::default() };
+    let mined = painted(&settings);
+    let texels = 0..512 * 512;
+    let at = |i: usize| {
+        let before = i32::from(sound.front.height.values()[i]);
+        let thick = i32::from(sound.front.thickness.values()[i]);
+        let left = i32::from(mined.front.thickness.values()[i]);
+        (i32::from(mined.front.height.values()[i]) - before, left - thick)
+    };
+    let changed: Vec<_> = texels.clone().map(at).filter(|(_, thin)| *thin < 0).collect();
+    assert!(changed.len() > 500, "{}", changed.len());
+    let raised = changed.iter().filter(|(raised, _)| *raised > 0).count();
+    assert!(raised * 10 > changed.len() * 8, "{raised} of {}", changed.len());
+    settings.damage = DamageSpec { spots: 1.0, ..DamageSpec::default() };
+    let spotted = painted(&settings);
+    let heights = |set: &TextureSet| set.front.height.values().to_vec();
+    let (before, after) = (heights(&sound), heights(&spotted));
+    let higher = texels.clone().filter(|&i| after[i] > before[i]).count();
+    let lower = texels.filter(|&i| after[i] < before[i]).count();
+    assert!(higher > 100 && lower > 100, "{higher} {lower}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use serde_json::Value;
 use venation::document::{Comments, schema};
 use venation::presets::PRESETS;
 
-use crate::support::{fail, fresh, run, succeed, venation};
+use crate::support::{fail, fresh, run, small, succeed, venation};
 
 /// What is wrong with a value under the part of JSON Schema that the schema uses; `None` when nothing.
 fn problem(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
@@ -78,6 +78,9 @@ fn the_schema_takes_every_preset_and_refuses_what_the_program_refuses() {
         ("[margin]\nlength_mm = \"60..90\"\n", true),
         ("[growth]\ntotal_steps = [10, 12]\n", true),
         ("seed = 3\nversion = \"0.1.0\"\n", true),
+        ("vary = 20\n", true),
+        ("vary = \"12.5 %\"\n", true),
+        ("vary = 150\n", false),
         ("[[margin.lobe]]\nangle_deg = 90\n[[margin.lobe]]\nside = \"apex\"\n", true),
         ("[[margin.lobe]]\nangel_deg = 90\n", false),
         ("[[margin.lobe]]\nangle_deg = 900\n", false),
@@ -162,4 +165,28 @@ fn json_stands_alone_on_stdout_whatever_happens() {
     }
     let (code, stdout, _) = run(folder.path(), &with(&["--seeds", "1-2"]));
     assert_eq!((code, stdout.as_str()), (3, ""));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn messages_that_cannot_be_written_stop_nothing() {
+    let folder = fresh();
+    let run = |arguments: &[&str]| {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("a full device");
+        std::process::Command::new(assert_cmd::cargo::cargo_bin("venation"))
+            .current_dir(folder.path())
+            .args(arguments)
+            .stdout(std::process::Stdio::null())
+            .stderr(full)
+            .status()
+            .expect("the program starts")
+            .code()
+    };
+    assert_eq!(run(&["generate", "beach"]), Some(2));
+    assert_eq!(run(&["merge", "nowhere"]), Some(2));
+    std::fs::create_dir(folder.path().join("out")).unwrap();
+    std::fs::write(folder.path().join("out/fagus-sylvatica_s0002"), "in the way").unwrap();
+    let batch = small(&["generate", "beech", "--seeds", "1-2", "-o", "out"]);
+    assert_eq!(run(&batch), Some(4));
+    assert!(folder.path().join("out/manifest.jsonl").exists());
 }

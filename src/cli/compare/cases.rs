@@ -12,7 +12,7 @@ use venation::veins::particles::patterns::Pattern;
 /// What differs from panel to panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum By {
-    /// The four growth types.
+    /// The growth types.
     Growth,
     /// Particles: the four scatter patterns × spacings of 3, 5, 7 and 10 pixels (Rodkaew 2002, fig. 9).
     Scatter,

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use venation::document::Document;
-use venation::io::image::{Caption, colour_png, film};
+use venation::io::animation::apng;
+use venation::io::image::{Caption, colour_png};
 use venation::io::write::{Overwrite, write_files};
 use venation::observer::Silent;
 use venation::pipeline::{self, Grown};
@@ -93,7 +94,9 @@ impl Year {
     ) -> Result<(), Failure> {
         let maturity = self.spec.state.maturity;
         let season = |i: usize| i as f64 / (frames - 1).max(1) as f64;
-        let animated = out.extension().is_some_and(|end| end == "png" || end == "apng");
+        let animated = out
+            .extension()
+            .is_some_and(|end| ["png", "apng"].iter().any(|known| end.eq_ignore_ascii_case(known)));
         if animated {
             super::super::refuse_existing([&out.to_path_buf()], force)?;
             if dry_run {
@@ -103,7 +106,7 @@ impl Year {
             let pictures: Vec<Grid<[u8; 4]>> = (0..frames)
                 .map(|i| Ok(self.painted(season(i), maturity)?.front.base_colour))
                 .collect::<Result<_, Failure>>()?;
-            save(out, film(&pictures, FILM_RATE))?;
+            save(out, apng(&pictures, FILM_RATE))?;
             writeln!(context.stdout, "{}", out.display())?;
             return Ok(());
         }
@@ -117,8 +120,7 @@ impl Year {
             }
             let picture = self.painted(season(i), maturity)?.front.base_colour;
             let file = (name(i), colour_png(&picture, &Caption::default()));
-            write_files(out, &[file], Overwrite::Force)
-                .map_err(|error| Failure::Input(error.to_string()))?;
+            write_files(out, &[file], Overwrite::Force)?;
             writeln!(context.stdout, "{}", path.display())?;
         }
         Ok(())

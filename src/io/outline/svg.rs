@@ -108,15 +108,14 @@ fn collect(
             usvg::Node::Group(inner) => collect(inner, from_page, tolerance, found, count)?,
             usvg::Node::Path(path) if path.is_visible() => {
                 let map = path.abs_transform().post_concat(*from_page);
-                for polygon in flattened(path.data(), &map, tolerance) {
-                    *count += polygon.len();
-                    found.push(polygon);
-                }
-                if *count > MOST_POINTS {
-                    return Err(OutlineProblem::Content(format!(
+                let room = MOST_POINTS - *count;
+                let polygons = flattened(path.data(), &map, tolerance, room).ok_or_else(|| {
+                    OutlineProblem::Content(format!(
                         "has more than {MOST_POINTS} points; simplify the drawing"
-                    )));
-                }
+                    ))
+                })?;
+                *count += polygons.iter().map(Vec::len).sum::<usize>();
+                found.extend(polygons);
             }
             _ => {}
         }
@@ -124,21 +123,28 @@ fn collect(
     Ok(())
 }
 
-/// The subpaths as closed polygons.
+/// The subpaths as closed polygons; `None` for more than so many points.
 fn flattened(
     path: &usvg::tiny_skia_path::Path,
     map: &Transform,
     tolerance: f64,
-) -> Vec<Vec<DVec2>> {
+    most: usize,
+) -> Option<Vec<Vec<DVec2>>> {
     let place = |mut p: Point| {
         map.map_point(&mut p);
         DVec2::new(f64::from(p.x), f64::from(p.y))
     };
     let mut polygons: Vec<Vec<DVec2>> = Vec::new();
     let mut now: Vec<DVec2> = Vec::new();
+    let mut before = 0;
     for segment in path.segments() {
+        // Before more is asked of memory: a curve of a few bytes is hundreds of points.
+        if before + now.len() > most {
+            return None;
+        }
         match segment {
             PathSegment::MoveTo(p) => {
+                before += now.len();
                 polygons.push(std::mem::take(&mut now));
                 now.push(place(p));
             }
@@ -165,7 +171,7 @@ fn flattened(
         }
     }
     polygons.retain(|p| p.len() > 2 && p.iter().all(|p| p.is_finite()));
-    polygons
+    (polygons.iter().map(Vec::len).sum::<usize>() <= most).then_some(polygons)
 }
 
 /// Appends a cubic as chords. A chord over 1/n of the parameter is off by at most
@@ -197,6 +203,20 @@ mod tests {
         assert!((area / (std::f64::consts::PI * 400.0) - 1.0).abs() < 1e-3, "{area}");
         assert!(points.iter().all(|p| (p.distance(DVec2::new(50.0, 60.0)) - 20.0).abs() < 0.02));
         assert_eq!(notes, ["3 shapes in the drawing: took the largest"]);
+    }
+
+    #[test]
+    fn a_path_of_too_many_points_is_left_before_they_are_all_there() {
+        let mut path = usvg::tiny_skia_path::PathBuilder::new();
+        path.move_to(0.0, 0.0);
+        for _ in 0..4 {
+            path.cubic_to(9e3, 0.0, 0.0, 9e3, 9e3, 9e3);
+        }
+        let path = path.finish().expect("a path");
+        let points = |most| flattened(&path, &Transform::identity(), 1e-3, most);
+        let all = points(10_000).expect("few enough").iter().map(Vec::len).sum::<usize>();
+        assert!(all > 900, "{all}");
+        assert!(points(all).is_some() && points(all - 1).is_none() && points(1).is_none());
     }
 
     #[test]

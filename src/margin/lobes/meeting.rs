@@ -55,13 +55,13 @@ fn first_crossing(a: &[DVec2], b: &[DVec2]) -> Option<(usize, usize, DVec2)> {
     let boxes: Vec<Rect> = runs(b).map(|(_, run)| Rect::around(run.iter().copied())).collect();
     for (start, run) in runs(a) {
         let around = Rect::around(run.iter().copied());
-        if !boxes.iter().any(|other| overlap(&around, other)) {
+        if !boxes.iter().any(|other| around.meets(*other)) {
             continue;
         }
         for (i, s) in run.windows(2).enumerate() {
             let around = Rect::around(s.iter().copied());
             for ((start_b, run_b), other) in runs(b).zip(&boxes) {
-                if !overlap(&around, other) {
+                if !around.meets(*other) {
                     continue;
                 }
                 for (j, t) in run_b.windows(2).enumerate() {
@@ -80,10 +80,6 @@ fn runs(line: &[DVec2]) -> impl Iterator<Item = (usize, &[DVec2])> {
     (0..line.len().saturating_sub(1))
         .step_by(RUN)
         .map(|start| (start, &line[start..(start + RUN + 1).min(line.len())]))
-}
-
-fn overlap(a: &Rect, b: &Rect) -> bool {
-    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
 }
 
 /// Where two segments cross. Both lobes of a palmate leaf end in one point, which is no crossing: the

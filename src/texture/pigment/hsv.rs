@@ -11,7 +11,7 @@
 //! Pigments only: no light is painted in, but the soft darkening of the green tissue that lines a
 //! vein.
 
-use super::amounts::Mixer;
+use super::mixer::Mixer;
 use super::{
     Albedo, Amounts, BACK, ColourSpec, ColourType, FRONT, Face, Hsv, SPREADING, SideColour,
     StateSpec, Tissue, shade,

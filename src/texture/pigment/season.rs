@@ -155,7 +155,7 @@ impl Course {
 /// What the season has made of the pigments of a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turned {
-    /// Share of the chlorophyll's colour left; see [`super::amounts`].
+    /// Share of the chlorophyll's colour left; see [`super::mixer`].
     pub chlorophyll: f32,
     /// Share of the carotenoid left.
     pub carotenoid: f32,

@@ -170,13 +170,6 @@ impl Network {
     pub fn incidence(&self) -> Incidence {
         Incidence::of(self.nodes.len(), &self.segments)
     }
-
-    /// The same network with other widths, one for each segment. For comparisons.
-    #[must_use]
-    pub fn with_widths(mut self, widths: &[f64]) -> Self {
-        self.segments.iter_mut().zip(widths).for_each(|(segment, &width)| segment.width = width);
-        self
-    }
 }
 
 /// A segment seen from one of its ends: twice its number, plus 1 from the second end.

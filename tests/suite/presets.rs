@@ -8,6 +8,8 @@ use venation::margin::{self, Landmark, LandmarkKind, MarginKind};
 use venation::presets::{self, FIGURES, PRESETS};
 use venation::seed::Seed;
 
+use crate::support::{fresh, succeed};
+
 #[test]
 fn every_preset_is_called_after_its_file_and_gives_a_margin() {
     for preset in presets::all() {
@@ -145,5 +147,14 @@ fn an_oak_is_hollow_between_its_lobes_and_at_the_base_and_nowhere_else() {
         let spec = document.resolve(Seed(seed)).expect("it resolves");
         let margin = margin::build(&spec.margin, Seed(seed)).expect("a margin");
         assert_eq!(hollows(margin.outline()), 13, "seed {seed}");
+    }
+}
+
+#[test]
+fn laid_veins_take_no_room_from_those_that_grow() {
+    let folder = fresh();
+    for scale in ["veins.scale=3", "veins.scale=10"] {
+        let fan = ["generate", "ginkgo", "--set", scale, "--maps", "none", "--format", "csv"];
+        succeed(folder.path(), &[&fan[..], &["-o", scale]].concat());
     }
 }

@@ -70,7 +70,7 @@ const MAX_NODES: usize = 10_000_000;
 /// the veinlets.
 const DRAIN: f64 = 3.0;
 
-/// How many nodes the blade can hold before they stand closer than a quarter of a step everywhere,
+/// How many nodes can grow in the blade before they stand closer than a quarter of a step everywhere,
 /// as children of one node never do. Without this limit a shower of darts with no least distances
 /// lets veins double in every step, until millions of nodes stand in one place.
 fn room(spec: &VeinSpec, blade: &GrowingBlade, metric: Metric) -> f64 {
@@ -122,6 +122,8 @@ pub fn grow(
     let mut made = 0;
     let mut nodes_after_step = Vec::new();
     let mut source_steps = 0;
+    // Those that were laid stand as close as they were laid.
+    let mut grown = 0;
     for step in blade.steps() {
         let frame = blade.frame(step);
         let metric = frame.metric();
@@ -165,7 +167,8 @@ pub fn grow(
         if let Some(points) = points {
             points.grow(&mut nodes, step, metric, rng);
         }
-        if nodes.len() > MAX_NODES || nodes.len() as f64 > room(spec, blade, metric) {
+        grown += nodes.len() - before;
+        if nodes.len() > MAX_NODES || grown as f64 > room(spec, blade, metric) {
             let problem = "crowds the blade with vein nodes; raise it, raise the spawn distances or \
                            throw fewer darts";
             return Err(VeinError::setting("veins.node_step_mm", spec.node_step_mm, problem));

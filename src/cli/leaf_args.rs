@@ -1,5 +1,7 @@
 //! The flags that describe a leaf, shared by the commands that make one.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use venation::document::{Document, Value};
@@ -150,7 +152,13 @@ fn read_text(path: &Path) -> Result<String, Failure> {
     if size > LARGEST_TEXT {
         return Err(fail(format!("{size} bytes are too many (limit {LARGEST_TEXT})")));
     }
-    let bytes = std::fs::read(path).map_err(|e| fail(e.to_string()))?;
+    // A device has no size, and no end.
+    let file = File::open(path).map_err(|e| fail(e.to_string()))?;
+    let mut bytes = Vec::new();
+    let read = file.take(LARGEST_TEXT + 1).read_to_end(&mut bytes);
+    if read.map_err(|e| fail(e.to_string()))? as u64 > LARGEST_TEXT {
+        return Err(fail(format!("more than {LARGEST_TEXT} bytes are too many")));
+    }
     String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".into()))
 }
 

@@ -65,8 +65,15 @@ pub fn write_files(
             return Err(Error::WouldOverwrite { folder: folder.to_owned(), files: taken });
         }
     }
-    if let Some(path) = names().map(|name| folder.join(name)).find(|path| path.is_dir()) {
-        return Err(Error::Write { path, source: ErrorKind::IsADirectory.into() });
+    for path in names().map(|name| folder.join(name)) {
+        if path.is_dir() {
+            return Err(Error::Write { path, source: ErrorKind::IsADirectory.into() });
+        }
+        // A device or a pipe would be gone, and a file in its place.
+        if path.exists() && !path.is_file() {
+            let source = std::io::Error::new(ErrorKind::InvalidInput, "is no plain file");
+            return Err(Error::Write { path, source });
+        }
     }
 
     let mut staged = Staged::default();

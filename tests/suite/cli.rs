@@ -211,6 +211,7 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
         (&["generate", "beech", "--seeds", "3-1"], "--seeds: column 1"),
         (&["generate", "beech", "--maps", "basecolour"], "basecolor"),
         (&["generate", "beech", "--format", "fbx"], "fbx"),
+        (&["generate", "beech", "--format", "gbl"], "did you mean `glb`"),
         (&["generate", "beech", "--outline", "nothing.png"], "nothing.png"),
         (&["generate", "beech", "--sources", "nothing.csv"], "nothing.csv"),
         (&["generate", "beech", "--growth", "fast"], "fast"),

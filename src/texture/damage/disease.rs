@@ -11,6 +11,9 @@ use crate::units::Angle;
 /// The pale halo of a spot, in its radii.
 const HALO: f32 = 0.8;
 
+/// A miner keeps so far from the axis of a larger vein (mm), beside what it eats itself.
+const VEIN_MM: f32 = 0.45;
+
 /// A miner that likes no way better than this goes no farther.
 const TRAPPED: f32 = 2.4;
 
@@ -96,7 +99,9 @@ impl Blade<'_> {
                     let towards = DVec2::from_angle(f64::from(bend + turn)).rotate(heading);
                     let eaten = galleries.iter().chain(&way[..behind]);
                     let cost = self.unease(p + towards * ahead, half, eaten);
-                    (cost + 1.5 * turn * turn, towards)
+                    // Nor does it leap over a vein.
+                    let vein = self.vein_in_the_way(p + towards * (0.5 * ahead), half);
+                    (cost.max(vein) + 1.5 * turn * turn, towards)
                 });
                 let (cost, towards) =
                     turned.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are thirteen");
@@ -119,9 +124,15 @@ impl Blade<'_> {
         let place = self.place(self.node_at(p));
         let near = |distance: f32, enough: f32| (1.0 - distance / (enough * half)).clamp(0.0, 1.5);
         let eaten = eaten.map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
-        1.2 * near(place.major, 2.5).powi(2)
+        self.vein_in_the_way(p, half)
             + 2.0 * near(place.edge, 4.0)
             + 3.0 * near(eaten.sqrt() as f32, 5.0)
+    }
+
+    /// How little it likes to be so near to one of the larger veins.
+    fn vein_in_the_way(&self, p: DVec2, half: f32) -> f32 {
+        let near = 1.0 - self.place(self.node_at(p)).major / (1.6 * half + VEIN_MM);
+        2.6 * near.max(0.0).powi(2)
     }
 
     fn gallery(&mut self, a: DVec2, b: DVec2, half: f32) {

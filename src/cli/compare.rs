@@ -116,7 +116,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if args.frames.is_some() {
         return Err(Failure::Input("--frames: only --by season makes a film".into()));
     }
-    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
+    refuse(args)?;
     if args.dry_run {
         return list(args, context);
     }
@@ -144,6 +144,13 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         let _ = write!(std::io::stderr(), "{}", measures::summary(args.by, &cells));
     }
     Ok(())
+}
+
+/// Refuses to write where it may not.
+fn refuse(args: &Args) -> Result<(), Failure> {
+    let written = || args.out.iter().chain(&args.csv);
+    super::spare_inputs(written(), &args.leaf.inputs())?;
+    super::refuse_existing(written(), args.force)
 }
 
 /// The files that were written, and as JSON what was measured, too.
@@ -185,7 +192,7 @@ fn through_the_year(
         let year = season::Year::new(document, seed)?;
         return year.film(frames as usize, out, (args.force, args.dry_run), context);
     }
-    super::refuse_existing(args.out.iter().chain(&args.csv), args.force)?;
+    refuse(args)?;
     if args.dry_run {
         return list(args, context);
     }

@@ -106,7 +106,7 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     };
     let outputs = args.outputs(&paths, single)?;
     let written = || outputs.iter().flatten().chain(&args.sheet);
-    super::spare_inputs(written(), &paths.iter().collect::<Vec<_>>())?;
+    super::spare_inputs(written(), &paths)?;
     super::refuse_existing(written(), args.force)?;
 
     let results: Vec<Result<Fitted, String>> =

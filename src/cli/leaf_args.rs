@@ -182,6 +182,12 @@ pub(crate) fn read_document(leaf: &str) -> Result<Document, Failure> {
 }
 
 impl LeafArgs {
+    /// The files that it is made from, and what may be one.
+    pub(crate) fn inputs(&self) -> Vec<PathBuf> {
+        let files = self.outline.iter().chain(&self.sources).cloned();
+        files.chain([PathBuf::from(&self.leaf)]).collect()
+    }
+
     /// Whether `--set` gives this key.
     pub(crate) fn sets(&self, key: &str) -> bool {
         self.set.iter().any(|assignment| assignment.split('=').next().map(str::trim) == Some(key))

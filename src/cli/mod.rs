@@ -175,7 +175,7 @@ fn refuse_existing<'a>(
 /// Refuses, forced or not, to write over what is read.
 fn spare_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a PathBuf>,
-    inputs: &[&PathBuf],
+    inputs: &[PathBuf],
 ) -> Result<(), Failure> {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     let read: Vec<PathBuf> = inputs.iter().filter_map(|path| real(path)).collect();

@@ -146,6 +146,9 @@ pub(super) fn assignment(text: &str, origin: &str) -> Result<(String, Value), Do
     check(value, &parameter).map(|value| (key.to_owned(), value)).map_err(fail)
 }
 
+/// So many letters of a word say which it is.
+const BEGUN: usize = 5;
+
 fn unknown(key: &str) -> String {
     fn last_of(key: &str) -> &str {
         key.rsplit('.').next().unwrap_or(key)
@@ -153,7 +156,13 @@ fn unknown(key: &str) -> String {
     let keys = || parameters().iter().map(|p| p.key.as_str());
     let last = last_of(key);
     let plain = records::template(key);
-    let by_key = nearest(plain.as_deref().unwrap_or(key), LIKE_A_KEY, keys());
+    let plain = plain.as_deref().unwrap_or(key);
+    // Units are forgotten first.
+    let is_begun = |known: &&str| known.strip_prefix(plain).is_some_and(|rest| !rest.contains('.'));
+    if let Some(begun) = keys().find(is_begun).filter(|_| last.len() >= BEGUN) {
+        return unknown_but(key, Some(begun));
+    }
+    let by_key = nearest(plain, LIKE_A_KEY, keys());
     // A last part that stands elsewhere, spelt like that or nearly, is the right word in the wrong group.
     let by_last = nearest(last, LIKE_A_KEY, keys().map(last_of))
         .and_then(|near| keys().find(|key| last_of(key) == near));

@@ -201,6 +201,10 @@ fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
         (&["generate", "."], "."),
         (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),
+        (
+            &["generate", "beech", "--set", "colour.pigments.leaf.chlorophyl=3"],
+            "did you mean `colour.pigments.leaf.chlorophyll_ug_cm2`",
+        ),
         (&["generate", "beech", "--set", "veins.kill_distance_mm=2..1"], "runs backwards"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm=nan"], "not a finite number"),
         (&["generate", "beech", "--set", "veins.kill_distance_mm=0"], "outside 0.001 to 1000"),

@@ -97,6 +97,10 @@ fn a_scan_is_not_overwritten_by_what_is_made_of_it() {
     assert!(message.contains("scan.png: is read"), "{message}");
     assert_eq!(std::fs::read(&scan).expect("a scan"), before);
     assert!(!folder.path().join("scan.toml").exists());
+    let outline = ["compare", "beech", "--outline", "scan.png", "-o", "scan.png", "--force"];
+    let message = fail(folder.path(), 2, &outline);
+    assert!(message.contains("scan.png: is read"), "{message}");
+    assert_eq!(std::fs::read(&scan).expect("a scan"), before);
 }
 
 #[test]

@@ -17,6 +17,18 @@ pub(crate) fn nearest<'a>(
         .map(|(_, candidate)| candidate)
 }
 
+/// What is wrong with a word that is none of a `kind`'s, to stand after it.
+pub(crate) fn advice<'a>(
+    word: &str,
+    kind: &str,
+    words: impl Iterator<Item = &'a str> + Clone,
+) -> String {
+    match nearest(word, LIKE_A_KEY, words.clone()) {
+        Some(near) => format!("is no {kind}; did you mean `{near}`?"),
+        None => format!("is none of {}", words.collect::<Vec<_>>().join(", ")),
+    }
+}
+
 /// How alike two words are: 0 nothing in common, 1 the same.
 pub(crate) fn likeness(a: &str, b: &str) -> f64 {
     strsim::normalized_damerau_levenshtein(a, b)

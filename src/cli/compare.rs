@@ -80,6 +80,13 @@ pub(crate) struct Args {
     force: bool,
 }
 
+impl Args {
+    /// The sheet and its table.
+    fn written(&self) -> impl Iterator<Item = &PathBuf> {
+        self.out.iter().chain(&self.csv)
+    }
+}
+
 /// One leaf of the comparison.
 struct Cell {
     case: Case,
@@ -148,9 +155,8 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
 
 /// Refuses to write where it may not.
 fn refuse(args: &Args) -> Result<(), Failure> {
-    let written = || args.out.iter().chain(&args.csv);
-    super::spare_inputs(written(), &args.leaf.inputs())?;
-    super::refuse_existing(written(), args.force)
+    super::spare_inputs(args.written(), &args.leaf.inputs())?;
+    super::refuse_existing(args.written(), args.force)
 }
 
 /// The files that were written, and as JSON what was measured, too.
@@ -158,8 +164,7 @@ fn report(args: &Args, leaves: &[Value], context: &mut Context<'_>) -> Result<()
     if !args.json {
         return list(args, context);
     }
-    let files: Vec<String> =
-        args.out.iter().chain(&args.csv).map(|path| path.display().to_string()).collect();
+    let files: Vec<String> = args.written().map(|path| path.display().to_string()).collect();
     let document = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "by": args.by.word(),
@@ -171,7 +176,7 @@ fn report(args: &Args, leaves: &[Value], context: &mut Context<'_>) -> Result<()
 
 /// The files that a sheet and its table would be.
 fn list(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    for path in args.out.iter().chain(&args.csv) {
+    for path in args.written() {
         writeln!(context.stdout, "{}", path.display())?;
     }
     Ok(())

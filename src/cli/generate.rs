@@ -131,7 +131,9 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
         let files = job.collisions();
         if *overwrite == Overwrite::Refuse && !files.is_empty() {
             let folder = job.folder.clone();
-            return Err(would_overwrite(&io::Error::WouldOverwrite { folder, files }));
+            let error = io::Error::WouldOverwrite { folder, files };
+            let problem = format!("{error}; --force overwrites, --skip-existing goes on");
+            return Err(Failure::Exists(problem));
         }
     }
     batch.check()?;
@@ -174,8 +176,8 @@ struct Batch {
 impl Batch {
     fn new(args: &Args, document: &Document) -> Result<Self, Failure> {
         let seeds = seeds::chosen(args.seeds.as_deref(), args.seed, document.seed)?;
-        let single = args.seeds.is_none() && args.shard.is_none();
         let alone = args.seeds.is_none();
+        let single = alone && args.shard.is_none();
         let run_sha256 =
             args.shard.map(|_| io::run_sha256(&document.to_toml(Comments::None), &seeds));
         let jobs: Vec<Job> = seeds
@@ -257,10 +259,6 @@ fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
         note: notes::of_sources(&leaf.grown.venation),
         ..Made::of(job, "made")
     })
-}
-
-fn would_overwrite(error: &io::Error) -> Failure {
-    Failure::Exists(format!("{error}; --force overwrites, --skip-existing goes on"))
 }
 
 fn shown(path: &Path) -> String {

@@ -1,5 +1,7 @@
 //! TOML and `key=value` into checked values, with the place of every mistake.
 
+use std::num::ParseIntError;
+
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::records::{self, find};
@@ -48,8 +50,9 @@ impl Reader<'_> {
                     self.table(&format!("{key}."), inner)?;
                 }
                 DeValue::Array(items) if records::is_list(&key) => self.records(&key, items)?,
+                // The whole range of the command line: more than TOML asks its readers to know.
                 value if key == SEED => {
-                    let seed = seed(value);
+                    let seed = integer(value, u64::from_str_radix);
                     let wrong =
                         || fail(format!("{SEED} takes a whole number from 0 to {}", u64::MAX));
                     self.document.seed = Some(seed.ok_or_else(wrong)?);
@@ -262,17 +265,13 @@ fn range(low: f64, high: f64, parameter: &Parameter) -> Result<Value, String> {
     Ok(Value::Count { low: whole(low)?, high: whole(high)? })
 }
 
-fn integer(value: &DeValue<'_>) -> Option<i64> {
+/// A whole number, read from its digits and their base.
+fn integer<T>(
+    value: &DeValue<'_>,
+    read: impl Fn(&str, u32) -> Result<T, ParseIntError>,
+) -> Option<T> {
     match value {
-        DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
-        _ => None,
-    }
-}
-
-/// The whole range of the command line: more than TOML asks its readers to know.
-fn seed(value: &DeValue<'_>) -> Option<u64> {
-    match value {
-        DeValue::Integer(n) => u64::from_str_radix(n.as_str(), n.radix()).ok(),
+        DeValue::Integer(n) => read(n.as_str(), n.radix()).ok(),
         _ => None,
     }
 }
@@ -280,7 +279,7 @@ fn seed(value: &DeValue<'_>) -> Option<u64> {
 fn float(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(x) => x.as_str().parse().ok(),
-        value => integer(value).map(|n| n as f64),
+        value => integer(value, i64::from_str_radix).map(|n| n as f64),
     }
 }
 

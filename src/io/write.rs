@@ -66,14 +66,15 @@ pub fn write_files(
         }
     }
     for path in names().map(|name| folder.join(name)) {
-        if path.is_dir() {
-            return Err(Error::Write { path, source: ErrorKind::IsADirectory.into() });
-        }
-        // A device or a pipe would be gone, and a file in its place.
-        if path.exists() && !path.is_file() {
-            let source = std::io::Error::new(ErrorKind::InvalidInput, "is no plain file");
-            return Err(Error::Write { path, source });
-        }
+        let source = match fs::metadata(&path) {
+            Ok(there) if there.is_dir() => ErrorKind::IsADirectory.into(),
+            // A device or a pipe would be gone, and a file in its place.
+            Ok(there) if !there.is_file() => {
+                std::io::Error::new(ErrorKind::InvalidInput, "is no plain file")
+            }
+            _ => continue,
+        };
+        return Err(Error::Write { path, source });
     }
 
     let mut staged = Staged::default();

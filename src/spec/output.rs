@@ -1,7 +1,7 @@
 //! What is written of a leaf: maps, formats, and how they are named and drawn.
 
 use crate::parameter::{Choice as _, parameters, words};
-use crate::spelling;
+use crate::spelling::advice;
 use crate::texture::TextureError;
 use crate::texture::map::{MapKind, MapSet};
 
@@ -152,7 +152,7 @@ pub enum OutputError {
     #[error(transparent)]
     Map(#[from] TextureError),
     /// A format that there is not.
-    #[error("output.formats: `{word}` {}", known_formats(word))]
+    #[error("output.formats: `{word}` {}", advice(word, "format", FormatKind::WORDS.iter().copied()))]
     Format {
         /// As given.
         word: String,
@@ -163,14 +163,6 @@ pub enum OutputError {
         /// As given.
         bits: u64,
     },
-}
-
-fn known_formats(word: &str) -> String {
-    let words = FormatKind::WORDS.iter().copied();
-    match spelling::nearest(word, spelling::LIKE_A_KEY, words) {
-        Some(near) => format!("is no format; did you mean `{near}`?"),
-        None => format!("is none of {}", FormatKind::WORDS.join(", ")),
-    }
 }
 
 impl OutputError {

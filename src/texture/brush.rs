@@ -2,6 +2,7 @@
 
 use super::map::{MapKind, MapSet};
 use super::optics::transmitted_share;
+use super::relief::Relief;
 use super::scene::Scene;
 use super::strip::{LANES, LEAST_SEEN, Lane, Strip};
 
@@ -79,6 +80,13 @@ impl Painted {
                 let [front, back] = scene.relief.heights(&strip.ground(i));
                 (self.heights[0][i], self.heights[1][i]) = (front, back);
             }
+            if scene.wounds.is_some() {
+                for i in 0..strip.len {
+                    let [front, back] = scene.relief.raised(strip.injury(i));
+                    self.heights[0][i] += front;
+                    self.heights[1][i] += back;
+                }
+            }
         }
         if maps.has(MapKind::Bump) {
             for i in 0..LANES {
@@ -97,14 +105,10 @@ impl Painted {
                 let blade = if self.alpha[i] < LEAST_SEEN { 0.0 } else { strip.blade[i] };
                 self.thickness[i] = scene.relief.thickness(&strip.ground(i)) * blade;
             }
-        }
-        if scene.wounds.is_some() {
-            for i in 0..strip.len {
-                let (raised, left) = scene.relief.injured(strip.injury(i));
-                for (heights, raised) in self.heights.iter_mut().zip(raised) {
-                    heights[i] += raised;
+            if scene.wounds.is_some() {
+                for i in 0..strip.len {
+                    self.thickness[i] *= Relief::left(strip.injury(i));
                 }
-                self.thickness[i] *= left;
             }
         }
         if strip.stalked {

@@ -44,7 +44,7 @@ use crate::observer::{Observer, Progress};
 use crate::parameter::{OutsideLimits, Parameters, parameters, words};
 use crate::raster::Grid;
 use crate::seed::Seed;
-use crate::spelling;
+use crate::spelling::advice;
 use crate::units::TextureFrame;
 use crate::veins::Venation;
 use damage::DamageSpec;
@@ -199,19 +199,11 @@ pub enum TextureError {
     #[error("{} = {} {}", .0.key, .0.value, .0.problem())]
     Setting(OutsideLimits),
     /// A map that there is not.
-    #[error("output.maps: `{word}` {}", known_maps(word))]
+    #[error("output.maps: `{word}` {}", advice(word, "map", MapKind::ALL.iter().map(|map| map.word())))]
     Map {
         /// As given.
         word: String,
     },
-}
-
-fn known_maps(word: &str) -> String {
-    let words = || MapKind::ALL.iter().map(|map| map.word());
-    match spelling::nearest(word, spelling::LIKE_A_KEY, words()) {
-        Some(near) => format!("is no map; did you mean `{near}`?"),
-        None => format!("is none of {}", words().collect::<Vec<_>>().join(", ")),
-    }
 }
 
 /// The textures of a leaf.

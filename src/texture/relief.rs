@@ -122,15 +122,20 @@ impl Relief {
         [quilt + areole + rough - groove, cord - 0.7 * quilt - areole + rough]
     }
 
-    /// What injuries add to the heights of both sides, and how much of the lamina they leave (mm, share):
-    /// dead and dry tissue shrinks, a mine is a blister over little of it, and what is walled off is a rim.
+    /// What injuries add to the heights of both sides (mm): dead and dry tissue shrinks, a mine is a blister,
+    /// and what is walled off is a rim.
     #[inline(always)]
-    pub(super) fn injured(&self, injury: &Injury) -> ([f32; 2], f32) {
+    pub(super) fn raised(&self, injury: &Injury) -> [f32; 2] {
         let shrunk = -SHRUNK * self.lamina * injury.brown.max(injury.pale - injury.blown);
         let rim = RIM * self.lamina * injury.dark;
         let blister = BLISTER * self.lamina * injury.blown;
-        let left = (1.0 - 0.4 * injury.brown) * (1.0 - 0.6 * injury.pale);
-        ([shrunk + rim + blister, shrunk + rim + 0.5 * blister], left)
+        [shrunk + rim + blister, shrunk + rim + 0.5 * blister]
+    }
+
+    /// The share of the tissue that injuries leave.
+    #[inline(always)]
+    pub(super) fn left(injury: &Injury) -> f32 {
+        (1.0 - 0.4 * injury.brown) * (1.0 - 0.6 * injury.pale)
     }
 
     /// Front and back of the petiole, which runs into the groove and the cord of the midrib.

@@ -149,6 +149,11 @@ pub(super) fn check(spec: &VeinSpec) -> Result<(), VeinError> {
         let key = format!("veins.{}", outside.key);
         return Err(VeinError::setting(key, outside.value, outside.problem()));
     }
+    agree(spec)
+}
+
+/// Refuses settings that are each in their limits and contradict each other.
+fn agree(spec: &VeinSpec) -> Result<(), VeinError> {
     guides::check(&spec.guides)?;
     // A vein steps over a source that is nearer than its step; half a step beyond, it must count as
     // reached, or the vein would turn round for ever.
@@ -174,7 +179,7 @@ pub(super) fn scaled(spec: &VeinSpec) -> Result<VeinSpec, VeinError> {
         );
         return Err(VeinError::setting("veins.scale", spec.scale, problem));
     }
-    check(&scaled)?;
+    agree(&scaled)?;
     Ok(scaled)
 }
 

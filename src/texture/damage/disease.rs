@@ -100,7 +100,8 @@ impl Blade<'_> {
                     let eaten = galleries.iter().chain(&way[..behind]);
                     let cost = self.unease(p + towards * ahead, half, eaten);
                     // Nor does it leap over a vein.
-                    let vein = self.vein_in_the_way(p + towards * (0.5 * ahead), half);
+                    let on_the_way = self.place(self.node_at(p + towards * (0.5 * ahead)));
+                    let vein = vein_in_the_way(on_the_way.major, half);
                     (cost.max(vein) + 1.5 * turn * turn, towards)
                 });
                 let (cost, towards) =
@@ -124,15 +125,9 @@ impl Blade<'_> {
         let place = self.place(self.node_at(p));
         let near = |distance: f32, enough: f32| (1.0 - distance / (enough * half)).clamp(0.0, 1.5);
         let eaten = eaten.map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
-        self.vein_in_the_way(p, half)
+        vein_in_the_way(place.major, half)
             + 2.0 * near(place.edge, 4.0)
             + 3.0 * near(eaten.sqrt() as f32, 5.0)
-    }
-
-    /// How little it likes to be so near to one of the larger veins.
-    fn vein_in_the_way(&self, p: DVec2, half: f32) -> f32 {
-        let near = 1.0 - self.place(self.node_at(p)).major / (1.6 * half + VEIN_MM);
-        2.6 * near.max(0.0).powi(2)
     }
 
     fn gallery(&mut self, a: DVec2, b: DVec2, half: f32) {
@@ -144,4 +139,10 @@ impl Blade<'_> {
             wound[FRASS] = wound[FRASS].max(0.22 * half - distance);
         }
     }
+}
+
+/// How little a miner of this half width likes to be so near to one of the larger veins (mm).
+fn vein_in_the_way(distance: f32, half: f32) -> f32 {
+    let near = 1.0 - distance / (1.6 * half + VEIN_MM);
+    2.6 * near.max(0.0).powi(2)
 }

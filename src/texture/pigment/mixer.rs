@@ -132,7 +132,7 @@ impl Mixer {
     /// What evenly spaced times of the season make of the pigments.
     fn course(&self, spec: &SenescenceSpec) -> Vec<Turned> {
         let at = |place: f32| Turned::at(place, spec);
-        let even: Vec<Turned> = (0..SEASONS).map(|i| at(i as f32 / (SEASONS - 1) as f32)).collect();
+        let even = |i: usize| i as f32 / (SEASONS - 1) as f32;
         // Of the tissue as such in front and behind, where it is less and where it is more green, where it
         // rots, and of a vein.
         let mut rotting = Tissue::default();
@@ -147,18 +147,18 @@ impl Mixer {
             let rotten = self.aged(self.leaf, &rotting, turned, 1.0);
             [upper, faint, pale, deep, rotten, self.behind(upper), self.vein(&tissue, &upper)]
         };
+        let mixes: Vec<[Mix; 7]> = (0..SEASONS).map(|i| mixes(&at(even(i)))).collect();
         let mut changes = vec![0.0_f32; SEASONS - 1];
         for which in 0..7 {
             let mut colours = Vec::new();
-            for turned in even.chunks(LANES) {
+            for mixes in mixes.chunks(LANES) {
                 let mut lanes = [[0.0; LANES]; 5];
-                for (i, turned) in turned.iter().enumerate() {
-                    let mix = mixes(turned)[which];
-                    (0..5).for_each(|k| lanes[k][i] = mix[k]);
+                for (i, mixes) in mixes.iter().enumerate() {
+                    (0..5).for_each(|k| lanes[k][i] = mixes[which][k]);
                 }
                 let mut seen = [[0.0; 8]; LANES];
                 self.lattice.read(&lanes, &mut seen);
-                colours.extend_from_slice(&seen[..turned.len()]);
+                colours.extend_from_slice(&seen[..mixes.len()]);
             }
             for (change, pair) in changes.iter_mut().zip(colours.windows(2)) {
                 let channels = pair[0].iter().zip(&pair[1]).take(6);

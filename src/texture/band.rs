@@ -10,7 +10,7 @@ use super::map::MapKind;
 use super::petiole::StalkAt;
 use super::scene::Scene;
 use super::side::SideMaps;
-use super::strip::{LANES, Strip, Structure};
+use super::strip::{Grain, LANES, Strip};
 use crate::geometry::whole;
 use crate::raster::Grid;
 use crate::raster::color::{byte, word};
@@ -55,7 +55,7 @@ impl pulp::WithSimd for Band<'_> {
 
     /// Where in each row something was painted.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Vec<Range<usize>> {
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<Range<usize>> {
         let Self { scene, number, rows, sides, scratch } = self;
         let size = scene.size;
         let cover = scene.blade_cover(rows.clone());
@@ -72,8 +72,7 @@ impl pulp::WithSimd for Band<'_> {
             let [left, bottom] = scene.frame.min.as_vec2().to_array();
             [left + x as f32 / scene.per_mm, bottom + (size - y) as f32 / scene.per_mm]
         };
-        let mut structure = Structure::new(scene);
-        structure.prepare(at(columns.start, rows.end), at(columns.end, rows.start));
+        let mut grain = Grain::new(scene);
         let (mut strip, mut painted) = (Strip::empty(), Painted::empty());
         let (mut front, mut back) = sides;
         for (y, span) in rows.clone().zip(&spans) {
@@ -85,7 +84,7 @@ impl pulp::WithSimd for Band<'_> {
             let wounds = scene.wounds.as_ref().map(|wounds| wounds.row(y));
             let [left, low] = at(span.start, y + 1);
             let height = low + 0.5 / scene.per_mm;
-            structure.prepare_row(left, at(span.end, y)[0], height, scene.seed);
+            grain.prepare(left, at(span.end, y)[0], height, scene.seed);
             for start in span.clone().step_by(LANES) {
                 let texels = line * size + start..line * size + (start + LANES).min(span.end);
                 strip.go_to(scene, start, texels.len(), y);
@@ -93,7 +92,7 @@ impl pulp::WithSimd for Band<'_> {
                 strip.read_veins(&scratch.veins, line);
                 let stalk = stalk.as_ref().map(|stalk| &stalk[texels.clone()]);
                 strip.read_cover(&cover[texels.clone()], stalk);
-                strip.read_structure(simd, scene, &structure);
+                strip.read_structure(scene, &grain);
                 if let Some(wounds) = &wounds {
                     strip.read_wounds(scene, wounds);
                 }
@@ -140,7 +139,7 @@ impl SideRows<'_> {
         let (heights, bumps) = (&painted.heights[side], &painted.bumps[side]);
         let (roughness, transmission) = (&painted.roughness[side], &painted.transmission[side]);
         lay!(self.colour, [0; 4], |i| {
-            let [r, g, b, ..] = shades[i];
+            let [r, g, b] = [0, 1, 2].map(|k| shades[k][i]);
             [byte(r), byte(g), byte(b), byte(alpha[i])]
         });
         lay!(self.height, 0, |i| whole::cut(heights[i] * per_height + 32768.0, 65535.0) as u16);
@@ -148,7 +147,7 @@ impl SideRows<'_> {
         lay!(self.roughness, 0, |i| byte(roughness[i]));
         lay!(self.transmission, 0, |i| byte(transmission[i]));
         lay!(self.translucency, [0; 3], |i| {
-            let [_, _, _, r, g, b, ..] = shades[i];
+            let [r, g, b] = [3, 4, 5].map(|k| shades[k][i]);
             [byte(r), byte(g), byte(b)]
         });
         lay!(self.thickness, 0, |i| {
@@ -157,13 +156,13 @@ impl SideRows<'_> {
         lay!(self.vein_mask, 0, |i| byte(strip.vein_mask(i)));
         lay!(self.vein_order, 0, |i| strip.vein_order(i));
         lay!(self.deep_colour, [0; 4], |i| {
-            let [r, g, b, ..] = shades[i];
+            let [r, g, b] = [0, 1, 2].map(|k| shades[k][i]);
             [word(r), word(g), word(b), word(alpha[i])]
         });
         lay!(self.deep_roughness, 0, |i| word(roughness[i]));
         lay!(self.deep_transmission, 0, |i| word(transmission[i]));
         lay!(self.deep_translucency, [0; 3], |i| {
-            let [_, _, _, r, g, b, ..] = shades[i];
+            let [r, g, b] = [3, 4, 5].map(|k| shades[k][i]);
             [word(r), word(g), word(b)]
         });
         lay!(self.deep_vein_mask, 0, |i| word(strip.vein_mask(i)));
@@ -177,9 +176,11 @@ fn laid<T: Copy>(texels: &mut [T], side: usize, values: &[T; LANES]) {
     if side == 0 {
         texels[..n].copy_from_slice(&values[..n]);
     } else {
-        for i in 0..n {
-            texels[n - 1 - i] = values[i];
+        let mut mirrored = *values;
+        for i in 0..LANES {
+            mirrored[LANES - 1 - i] = values[i];
         }
+        texels[..n].copy_from_slice(&mirrored[LANES - n..]);
     }
 }
 

@@ -25,19 +25,23 @@ impl Shade {
     }
 
     #[inline(always)]
-    pub(super) fn of([r, g, b, tr, tg, tb, ..]: [f32; 8]) -> Self {
+    pub(super) fn at(shades: &Shades, i: usize) -> Self {
+        let [r, g, b, tr, tg, tb] = [0, 1, 2, 3, 4, 5].map(|k| shades[k][i]);
         Self { reflected: [r, g, b], through: [tr, tg, tb] }
     }
 
     #[inline(always)]
-    pub(super) fn array(self) -> [f32; 8] {
+    pub(super) fn put(self, shades: &mut Shades, i: usize) {
         let ([r, g, b], [tr, tg, tb]) = (self.reflected, self.through);
-        [r, g, b, tr, tg, tb, 0.0, 0.0]
+        for (lane, value) in shades.iter_mut().zip([r, g, b, tr, tg, tb]) {
+            lane[i] = value;
+        }
     }
 }
 
-/// The colours of the texels of a strip on one side: a [`Shade`] in the first six numbers.
-pub(super) type Shades = [[f32; 8]; LANES];
+/// The colours of the texels of a strip on one side: red, green and blue of the light sent back and of that which
+/// comes through.
+pub(super) type Shades = [Lane; 6];
 
 /// A strip of both sides. What is not asked for is left as it was.
 #[derive(Debug)]
@@ -60,7 +64,7 @@ impl Painted {
         let zero = [0.0; LANES];
         Self {
             alpha: zero,
-            shades: [[[0.0; 8]; LANES]; 2],
+            shades: [[zero; 6]; 2],
             heights: [zero; 2],
             bumps: [zero; 2],
             roughness: [zero; 2],
@@ -82,7 +86,7 @@ impl Painted {
             }
             if scene.wounds.is_some() {
                 for i in 0..strip.len {
-                    let [front, back] = scene.relief.raised(strip.injury(i));
+                    let [front, back] = scene.relief.raised(&strip.injury(i));
                     self.heights[0][i] += front;
                     self.heights[1][i] += back;
                 }
@@ -107,7 +111,7 @@ impl Painted {
             }
             if scene.wounds.is_some() {
                 for i in 0..strip.len {
-                    self.thickness[i] *= Relief::left(strip.injury(i));
+                    self.thickness[i] *= Relief::left(&strip.injury(i));
                 }
             }
         }
@@ -116,8 +120,8 @@ impl Painted {
         }
         if maps.has(MapKind::Orm) {
             for (shares, shades) in self.transmission.iter_mut().zip(&self.shades) {
-                for (share, shade) in shares.iter_mut().zip(shades) {
-                    let Shade { reflected, through } = Shade::of(*shade);
+                for (i, share) in shares.iter_mut().enumerate() {
+                    let Shade { reflected, through } = Shade::at(shades, i);
                     *share = transmitted_share(reflected, through);
                 }
             }
@@ -139,8 +143,8 @@ impl Painted {
             let (bumps, roughness) = (scene.relief.stalk_bumps(), scene.optics.stalk());
             for side in 0..2 {
                 let share = shares[side];
-                let shade = &mut self.shades[side][i];
-                *shade = Shade::of(*shade).mixed(shades[side], share).array();
+                let painted = &mut self.shades[side];
+                Shade::at(painted, i).mixed(shades[side], share).put(painted, i);
                 for (lane, value) in [
                     (&mut self.heights[side], heights[side]),
                     (&mut self.bumps[side], bumps[side]),

@@ -75,6 +75,18 @@ pub(super) struct Injury {
     pub blown: f32,
 }
 
+impl Injury {
+    #[inline(always)]
+    pub(super) fn array(self) -> [f32; 4] {
+        [self.brown, self.dark, self.pale, self.blown]
+    }
+
+    #[inline(always)]
+    pub(super) fn of([brown, dark, pale, blown]: [f32; 4]) -> Self {
+        Self { brown, dark, pale, blown }
+    }
+}
+
 /// A node of the wounds: depths in a gap, a skeletonised area, a spot, a mine and the line of frass in
 /// it (mm, negative outside), how brown and how pale. What has an edge is kept as a depth, so that the
 /// edge is as sharp as the texels, not as the nodes.

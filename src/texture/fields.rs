@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use super::banded::Banded;
+use super::chords::chords;
 use super::pen::{Axis, BLOCK, Pen, block};
 use crate::raster::coverage::{Capsule, stroke_share};
 use crate::units::TextureFrame;
@@ -29,8 +30,8 @@ const SOFT_EDGE: f32 = 0.3;
 /// Where veins overlap, one of this radius (mm) counts half.
 const SHOWS_MM: f32 = 0.05;
 
-/// A vein thins to this share of its radius at its end, so that it is lost in the tissue.
-const TIP: f64 = 0.35;
+/// A vein is drawn no farther from its nodes than this, nor wider or narrower (px).
+const OFF_PX: f64 = 0.12;
 
 /// The veins of a leaf as strokes on its texture (pixels).
 #[derive(Debug)]
@@ -114,34 +115,18 @@ impl Strokes {
             frame.pixel_from_leaf(venation.graph().positions()[node as usize], size).as_vec2()
         };
         let radii = necked(venation, neck);
-        let radius = |node: u32| radii[node as usize] * pixels_per_mm;
-        let mut ends: Vec<bool> =
-            venation.graph().child_counts().iter().map(|&count| count == 0).collect();
-        for &(a, b) in venation.graph().joins() {
-            (ends[a as usize], ends[b as usize]) = (false, false);
-        }
-        let grown = venation.graph().edges().map(|(parent, child)| {
-            let (a, b) = (at(parent), at(child));
-            let flare =
-                (radius(child) * BRANCH_FLARE).min(radius(child) + f64::from(a.distance(b)));
-            Capsule {
-                a,
-                b,
-                radius_a: radius(parent).min(flare) as f32,
-                radius_b: (radius(child) * if ends[child as usize] { TIP } else { 1.0 }) as f32,
-            }
+        let grown = chords(venation, &radii, OFF_PX / pixels_per_mm).into_iter().map(|chord| {
+            let [radius_a, radius_b] = chord.radii.map(|radius| (radius * pixels_per_mm) as f32);
+            (Capsule { a: at(chord.from), b: at(chord.to), radius_a, radius_b }, chord.to)
         });
         let joined = venation.graph().joins().iter().map(|&(a, b)| {
-            let thinner = radius(a).min(radius(b)) as f32;
-            Capsule { a: at(a), b: at(b), radius_a: thinner, radius_b: thinner }
+            let thinner = (radii[a as usize].min(radii[b as usize]) * pixels_per_mm) as f32;
+            (Capsule { a: at(a), b: at(b), radius_a: thinner, radius_b: thinner }, b)
         });
-        let edges = venation.graph().edges().map(|(_, child)| child);
-        let loops = venation.graph().joins().iter().map(|&(_, b)| b);
-        let orders = edges.chain(loops).map(|node| venation.orders()[node as usize]);
         let strokes: Vec<Stroke> = grown
             .chain(joined)
-            .zip(orders)
-            .map(|(capsule, order)| {
+            .map(|(capsule, node)| {
+                let order = venation.orders()[node as usize];
                 let widest = capsule.widest();
                 let reach = (GROOVE_RADII * widest).max(widest + LEAST_HALF_PX);
                 Stroke { capsule, order, reach }

@@ -7,6 +7,7 @@
 
 use std::sync::LazyLock;
 
+use super::brush::Shades;
 use super::pigment::Albedo;
 use super::spectrum::{Spectrum, Tabulated, encoded};
 use super::strip::{LANES, Lane};
@@ -21,6 +22,9 @@ const STRUCTURE: [f64; 2] = [1.0, 3.2];
 
 /// The last node stands for these amounts; more looks the same.
 const MOST: [f64; 4] = [120.0, 40.0, 60.0, 4.0];
+
+/// Texels whose colours are turned from node by node to channel by channel together.
+const BLOCK: usize = 8;
 
 /// Red, green, blue sent back and let through; two lanes are spare.
 type Node = [f32; 8];
@@ -104,7 +108,7 @@ impl Lattice {
     /// Red, green, blue sent back, then let through, as sRGB numbers, of leaves with so much
     /// chlorophyll, carotenoid, anthocyanin, brown and structure.
     #[inline(always)]
-    pub(super) fn read(&self, amounts: &[Lane; 5], colours: &mut [Node; LANES]) {
+    pub(super) fn read(&self, amounts: &[Lane; 5], colours: &mut Shades) {
         const PER_STRUCTURE: f32 = (NODES[4] - 1) as f32 / (STRUCTURE[1] - STRUCTURE[0]) as f32;
         // The corners of a place's simplex, one after the other, and how much each counts.
         let (mut corners, mut weights) = ([[0_u32; LANES]; 6], [[0.0_f32; LANES]; 6]);
@@ -136,15 +140,24 @@ impl Lattice {
             }
             (corners[5][i], weights[5][i]) = (corner, before);
         }
-        for (i, colour) in colours.iter_mut().enumerate() {
-            let mut sum = [0.0; 8];
-            for k in 0..6 {
-                let (node, weight) = (&self.nodes[corners[k][i] as usize], weights[k][i]);
-                for c in 0..8 {
-                    sum[c] += node[c] * weight;
+        for block in (0..LANES).step_by(BLOCK) {
+            let mut seen = [[0.0; 8]; BLOCK];
+            for (i, seen) in seen.iter_mut().enumerate() {
+                let mut sum = [0.0; 8];
+                for k in 0..6 {
+                    let at = block + i;
+                    let (node, weight) = (&self.nodes[corners[k][at] as usize], weights[k][at]);
+                    for c in 0..8 {
+                        sum[c] += node[c] * weight;
+                    }
+                }
+                *seen = sum;
+            }
+            for c in 0..6 {
+                for i in 0..BLOCK {
+                    colours[c][block + i] = seen[i][c];
                 }
             }
-            *colour = sum;
         }
     }
 }
@@ -154,7 +167,7 @@ impl Lattice {
     /// colour (sRGB numbers, 0–1), or as near to it as leaves come. Of several such leaves that which is
     /// most like a living one: carotenoid follows chlorophyll, and nothing is brown without need.
     pub(super) fn leaf_of(&self, colour: [f32; 3]) -> [f32; 5] {
-        let off = |amounts: [f32; 5], seen: &Node| -> f32 {
+        let off = |amounts: [f32; 5], seen: &[f32]| -> f32 {
             let far: f32 = (0..3).map(|c| (seen[c] - colour[c]).powi(2)).sum();
             let [green, yellow, red, brown, structure] = amounts;
             let usual = ((yellow - 0.2 * green - 1.0) / 20.0).powi(2);
@@ -177,7 +190,7 @@ impl Lattice {
         let mut leaf = node(i);
         // From the nearest node downhill, a step to either side on every axis; steps shrink.
         let mut steps = [6.0, 3.0, 5.0, 0.3, 0.3_f32];
-        let mut seen = [[0.0; 8]; LANES];
+        let mut seen = [[0.0; LANES]; 6];
         for _ in 0..40 {
             let mut lanes = leaf.map(|amount| [amount; LANES]);
             for (k, lane) in lanes.iter_mut().enumerate() {
@@ -188,9 +201,10 @@ impl Lattice {
             }
             self.read(&lanes, &mut seen);
             let mut better = None;
-            for (i, seen) in seen.iter().enumerate().take(10) {
+            for i in 0..10 {
+                let seen = seen.map(|lane| lane[i]);
                 let tried: [f32; 5] = std::array::from_fn(|k| lanes[k][i]);
-                let far = off(tried, seen);
+                let far = off(tried, &seen);
                 if far < least {
                     (least, better) = (far, Some(tried));
                 }
@@ -214,10 +228,10 @@ mod tests {
     use palette::{FromColor, Lab, Srgb};
 
     impl Lattice {
-        fn at(&self, amounts: [f32; 5]) -> Node {
-            let mut colours = [[0.0; 8]; LANES];
+        fn at(&self, amounts: [f32; 5]) -> [f32; 6] {
+            let mut colours = [[0.0; LANES]; 6];
             self.read(&amounts.map(|amount| [amount; LANES]), &mut colours);
-            colours[LANES - 1]
+            colours.map(|lane| lane[LANES - 1])
         }
     }
 

@@ -14,6 +14,7 @@ use super::damage::Wounds;
 use super::fields::{Strokes, midrib};
 use super::guide::{Guide, Lattice, NODES_OF_WOUNDS, Reach};
 use super::map::{MapKind, MapSet};
+use super::net::Net;
 use super::optics::Optics;
 use super::petiole::Stalk;
 use super::pigment::{ColourType, Course, Pigments};
@@ -57,6 +58,8 @@ pub(super) struct Scene {
     slits: Vec<Capsule>,
     pub(super) strokes: Strokes,
     pub(super) guide: Guide,
+    /// None where it is finer than the texels.
+    pub(super) nets: [Option<Net>; 3],
     pub(super) stalk: Stalk,
     pub(super) stalk_length: f32,
     pub(super) pigments: Pigments,
@@ -155,6 +158,7 @@ impl Scene {
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
             maps: paint.maps,
+            nets: nets(per_mm as f32, tissue),
             stalk,
             seed: tissue,
         }
@@ -236,6 +240,15 @@ impl Scene {
         }
         cover
     }
+}
+
+/// The nets of a leaf that a texture of so many pixels to the millimetre shows.
+fn nets(per_mm: f32, seed: u32) -> [Option<Net>; 3] {
+    [0, 1, 2].map(|k| {
+        let size = tissue::MESH_MM[k];
+        let shown = tissue::shown(size, per_mm) > 0.0;
+        shown.then(|| Net::new(size, tissue::CELLS[k], per_mm, seed ^ (0x51 + k as u32)))
+    })
 }
 
 /// Where the speckles lie: darts on the blade, the same for both sides.

@@ -11,7 +11,7 @@ use super::petiole::StalkAt;
 use super::pigment::{Condition, Tissue};
 use super::relief::Ground;
 use super::scene::Scene;
-use super::tissue::{self, Net, smooth};
+use super::tissue::{self, smooth};
 use crate::geometry::noise::GradientRow;
 use crate::raster::coverage::stroke_share;
 
@@ -33,44 +33,22 @@ pub(super) const LEAST_SEEN: f32 = 0.5 / 255.0;
 /// The net is bent by this much of the middle and of the fine noise (mm), along and across.
 const BENT_MM: [[f32; 2]; 2] = [[0.5, 0.25], [-0.4, 0.45]];
 
-/// No place of the net is moved further (mm).
-const MOST_BENT_MM: f32 = 0.86;
-
-/// The finest structure over a band of rows.
+/// The grain of a row.
 #[derive(Debug)]
-pub(super) struct Structure {
-    nets: [Net; 3],
-    shown: [f32; 3],
-    lines: [f32; 3],
-    grain_mm: f32,
-    grain: GradientRow,
+pub(super) struct Grain {
+    size_mm: f32,
+    row: GradientRow,
 }
 
-impl Structure {
+impl Grain {
     pub(super) fn new(scene: &Scene) -> Self {
-        let sizes = tissue::MESH_MM;
-        Self {
-            nets: [0, 1, 2].map(|k| Net::new(sizes[k], scene.seed ^ (0x51 + k as u32))),
-            shown: sizes.map(|size| tissue::shown(size, scene.per_mm)),
-            lines: tissue::LINE_MM.map(|half| half * scene.per_mm),
-            grain_mm: tissue::grain_size(scene.per_mm),
-            grain: GradientRow::default(),
-        }
-    }
-
-    /// Makes ready for the places between two corners (mm).
-    pub(super) fn prepare(&mut self, low: [f32; 2], high: [f32; 2]) {
-        for (net, shown) in self.nets.iter_mut().zip(self.shown) {
-            if shown > 0.0 {
-                net.prepare(low.map(|v| v - MOST_BENT_MM), high.map(|v| v + MOST_BENT_MM));
-            }
-        }
+        Self { size_mm: tissue::grain_size(scene.per_mm), row: GradientRow::default() }
     }
 
     /// Makes ready for a row at `y` between two ends (mm).
-    pub(super) fn prepare_row(&mut self, left: f32, right: f32, y: f32, seed: u32) {
-        let size = self.grain_mm;
-        self.grain.prepare(left / size, right / size, y / size, seed ^ 0x77);
+    pub(super) fn prepare(&mut self, left: f32, right: f32, y: f32, seed: u32) {
+        let size = self.size_mm;
+        self.row.prepare(left / size, right / size, y / size, seed ^ 0x77);
     }
 }
 
@@ -93,7 +71,8 @@ pub(super) struct Strip {
     pub(super) blade: Lane,
     /// Season, chlorosis, death, as in [`Condition`].
     condition: [Lane; 3],
-    injured: [Injury; LANES],
+    /// Brown, dark, pale, blown, as in [`Injury`].
+    injured: [Lane; 4],
     /// Whether the petiole is here.
     pub(super) stalked: bool,
     pub(super) stalk: [StalkAt; LANES],
@@ -127,7 +106,7 @@ impl Strip {
             grain: zero,
             blade: zero,
             condition: [zero; 3],
-            injured: [Injury::default(); LANES],
+            injured: [zero; 4],
             stalked: false,
             stalk: [StalkAt::default(); LANES],
             fibre: zero,
@@ -140,8 +119,9 @@ impl Strip {
         (self.start, self.len) = (start, len);
         let mm = 1.0 / scene.per_mm;
         let [left, bottom] = scene.frame.min.as_vec2().to_array();
+        let (left, first, last) = (left + 0.5 * mm, start as i32, len as i32 - 1);
         for i in 0..LANES {
-            self.x[i] = left + ((start + i.min(len - 1)) as f32 + 0.5) * mm;
+            self.x[i] = left + (first + (i as i32).min(last)) as f32 * mm;
         }
         self.y = bottom + (scene.size as f32 - y as f32 - 0.5) * mm;
     }
@@ -183,12 +163,7 @@ impl Strip {
     /// Nets and grain.
     #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
-    pub(super) fn read_structure<S: pulp::Simd>(
-        &mut self,
-        simd: S,
-        scene: &Scene,
-        structure: &Structure,
-    ) {
+    pub(super) fn read_structure(&mut self, scene: &Scene, grain: &Grain) {
         let (mut bent, mut distance, mut number) = ([[0.0; LANES]; 2], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             // The net is drawn out and bent by the tissue's own unevenness.
@@ -196,15 +171,15 @@ impl Strip {
             bent[0][i] = self.x[i] + BENT_MM[0][0] * middle + BENT_MM[0][1] * fine;
             bent[1][i] = self.y + BENT_MM[1][0] * middle + BENT_MM[1][1] * fine;
         }
-        for k in 0..3 {
-            let (lines, tones) = (&mut self.lines[k], &mut self.tones[k]);
-            let shown = structure.shown[k];
-            if shown == 0.0 {
+        for (k, net) in scene.nets.iter().enumerate() {
+            let Some(net) = net else {
                 continue;
-            }
-            structure.nets[k].along(simd, &bent, &mut distance, &mut number);
+            };
+            let (lines, tones) = (&mut self.lines[k], &mut self.tones[k]);
+            net.along(&bent, &mut distance, &mut number);
+            let shown = tissue::shown(tissue::MESH_MM[k], scene.per_mm);
             let [none, full] = tissue::AWAY_MM[k];
-            let line = structure.lines[k];
+            let line = tissue::LINE_MM[k] * scene.per_mm;
             let half = (0.7 * line).max(0.7);
             for i in 0..LANES {
                 let shown = shown * smooth(none, full, self.guide[2][i]);
@@ -215,8 +190,8 @@ impl Strip {
                 self.border = distance;
             }
         }
-        let size = structure.grain_mm;
-        self.grain = structure.grain.along(&self.x.map(|x| x / size));
+        let size = grain.size_mm;
+        self.grain = grain.row.along(&self.x.map(|x| x / size));
         if self.stalked {
             for i in 0..LANES {
                 // The stalk is made of fibres: its grain is drawn out along it.
@@ -245,7 +220,9 @@ impl Strip {
                 self.blade[i] *= 1.0 - bare * (1.0 - kept);
                 injury.brown = injury.brown.max(0.55 * bare);
             }
-            self.injured[i] = injury;
+            for (lane, value) in self.injured.iter_mut().zip(injury.array()) {
+                lane[i] = value;
+            }
         }
     }
 
@@ -310,20 +287,21 @@ impl Strip {
             grain: self.grain[i],
             from_base: (x * x + y * y).sqrt(),
             condition: Condition { season, chlorosis, death },
-            injury: self.injured[i],
+            injury: self.injury(i),
         }
     }
 
     /// What has been done to a texel.
-    pub(super) fn injury(&self, i: usize) -> &Injury {
-        &self.injured[i]
+    #[inline(always)]
+    pub(super) fn injury(&self, i: usize) -> Injury {
+        Injury::of([0, 1, 2, 3].map(|k| self.injured[k][i]))
     }
 
     /// How dry the tissue is, 0–1.
     #[inline(always)]
     pub(super) fn dryness(&self, i: usize) -> f32 {
         let [season, chlorosis, death] = [0, 1, 2].map(|k| self.condition[k][i]);
-        Condition { season, chlorosis, death }.dryness().max(self.injured[i].brown)
+        Condition { season, chlorosis, death }.dryness().max(self.injury(i).brown)
     }
 
     /// How much of a texel is vein; none where nothing of the leaf is seen.

@@ -71,7 +71,7 @@ impl Leaf {
     /// explain fades meanwhile.
     pub(super) fn paint(&self, strip: &Strip, shades: &mut [Shades; 2]) {
         self.now.paint(strip, shades);
-        let mut sound = [[[0.0; 8]; LANES]; 2];
+        let mut sound = [[[0.0; LANES]; 6]; 2];
         if self.changed {
             self.sound.paint(strip, &mut sound);
         }
@@ -82,17 +82,17 @@ impl Leaf {
                 let alive = (1.0 - tissue.condition.season) * (1.0 - tissue.condition.death);
                 let kept = alive * (1.0 - tissue.injury.brown) * (1.0 - tissue.injury.pale);
                 for c in 0..3 {
-                    let now = shades[i][c];
+                    let now = shades[c][i];
                     let seen = if self.changed {
-                        now + (chosen[c] - sound[i][c]) * kept
+                        now + (chosen[c] - sound[c][i]) * kept
                     } else {
                         chosen[c]
                     };
                     let seen = seen.clamp(0.0, 1.0);
-                    shades[i][c] = seen;
+                    shades[c][i] = seen;
                     // No more light comes out than falls in; squares stand in for sRGB's curve, which
                     // lies below them.
-                    shades[i][c + 3] = shades[i][c + 3].min((1.0 - seen * seen).max(0.0).sqrt());
+                    shades[c + 3][i] = shades[c + 3][i].min((1.0 - seen * seen).max(0.0).sqrt());
                 }
             }
         }

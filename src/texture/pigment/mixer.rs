@@ -156,12 +156,12 @@ impl Mixer {
                 for (i, mixes) in mixes.iter().enumerate() {
                     (0..5).for_each(|k| lanes[k][i] = mixes[which][k]);
                 }
-                let mut seen = [[0.0; 8]; LANES];
+                let mut seen = [[0.0; LANES]; 6];
                 self.lattice.read(&lanes, &mut seen);
-                colours.extend_from_slice(&seen[..mixes.len()]);
+                colours.extend((0..mixes.len()).map(|i| seen.map(|lane| lane[i])));
             }
             for (change, pair) in changes.iter_mut().zip(colours.windows(2)) {
-                let channels = pair[0].iter().zip(&pair[1]).take(6);
+                let channels = pair[0].iter().zip(&pair[1]);
                 *change = channels.map(|(a, b)| (a - b).abs()).fold(*change, f32::max);
             }
         }
@@ -210,14 +210,14 @@ impl Mixer {
         self.lattice.read(&above, front);
         self.lattice.read(&below, back);
         let white = |c: usize, value: f32, bloom: f32| value + (BLOOM[c] - value) * bloom;
-        for i in 0..LANES {
-            // Light meets the same tissue from either side.
-            for c in 0..3 {
-                let through = front[i][c + 3] * (1.0 - 0.5 * bloom[i]) * passing[i];
-                (front[i][c + 3], back[i][c + 3]) = (through, through);
-                front[i][c] = white(c, front[i][c], self.front_bloom);
-                back[i][c] = white(c, back[i][c], bloom[i]);
+        for c in 0..3 {
+            for i in 0..LANES {
+                front[c][i] = white(c, front[c][i], self.front_bloom);
+                back[c][i] = white(c, back[c][i], bloom[i]);
+                front[c + 3][i] *= (1.0 - 0.5 * bloom[i]) * passing[i];
             }
+            // Light meets the same tissue from either side.
+            back[c + 3] = front[c + 3];
         }
         if strip.y.abs() < self.petiole_reach {
             self.add_petiole(strip, [front, back]);
@@ -229,14 +229,14 @@ impl Mixer {
         let petiole = shade(self.petiole, 0.3);
         let [some, all] = COMES_OUT.map(|share| share * self.petiole_reach);
         for (shades, face) in sides.into_iter().zip([&FRONT, &BACK]) {
-            for (i, seen) in shades.iter_mut().enumerate().take(strip.len) {
+            for i in 0..strip.len {
                 let tissue = strip.tissue(i);
                 let near = 1.0 - smooth(0.0, self.petiole_reach, tissue.from_base);
                 // A vein is seen through the tissue over it, from which the petiole comes out.
                 let seen_through = tissue.veins_seen(face, self.mottle)[1];
                 let bare = near * smooth(some, all, tissue.vein.radius);
                 let share = near * (seen_through + (tissue.vein.cover - seen_through) * bare);
-                *seen = Shade::of(*seen).mixed(petiole, share).array();
+                Shade::at(shades, i).mixed(petiole, share).put(shades, i);
             }
         }
     }
@@ -323,10 +323,13 @@ impl Mixer {
     /// What the season has made of the pigments at each place; see [`Turned`].
     #[inline(always)]
     fn turned(&self, seasons: &Lane) -> [Lane; 6] {
-        if self.summer {
-            return self.seasons[0].array().map(|value| [value; LANES]);
-        }
         let mut turned = [[0.0; LANES]; 6];
+        if self.summer {
+            for (lane, value) in turned.iter_mut().zip(self.seasons[0].array()) {
+                *lane = [value; LANES];
+            }
+            return turned;
+        }
         for (lane, season) in seasons.iter().enumerate() {
             let place = season.clamp(0.0, 1.0) * (SEASONS - 1) as f32;
             let i = (place as usize).min(SEASONS - 2);

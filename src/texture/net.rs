@@ -27,8 +27,8 @@ const ENTRIES: [usize; 2] = [BLOCK, 64];
 /// Entries that are worked out together.
 const BLOCK: usize = 8;
 
-/// The farthest distance to a border that is told from others (cells): √½ would be that of a square cell, and points
-/// lie apart by less than two cells.
+/// Places farther from a border than this (cells) count as so far. Hardly any is farther than one: it would lie as
+/// far from the nearest points of all cells around it.
 const FARTHEST: f32 = 1.5;
 
 /// Steps of a distance, 12 bits.
@@ -51,7 +51,7 @@ pub(super) struct Net {
 
 /// From the highest bits: distance to the border; slope to the right and upwards; the areole's tone and that of
 /// the areole beyond.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Entry(u32);
 
 impl Entry {
@@ -90,6 +90,7 @@ impl Net {
     /// A net of cells of this size (mm), of which so many, a power of two, make a side of the patch, as a texture of so
     /// many pixels to the millimetre shows it.
     pub(super) fn new(size_mm: f32, cells: usize, per_mm: f32, seed: u32) -> Self {
+        debug_assert!(cells.is_power_of_two(), "cells are counted round by their bits");
         let wanted = (size_mm * per_mm / ENTRY_TEXELS) as usize;
         let [least, most] = ENTRIES;
         let per_cell = wanted.next_power_of_two().clamp(least, most);
@@ -299,6 +300,17 @@ mod tests {
             // The nearest two of nine points are not always those of twenty-five.
             assert!(wrong * 1000 < asked * 5, "{size_mm}: {wrong} of {asked} wrong");
         }
+    }
+
+    #[test]
+    fn a_net_does_not_depend_on_the_processor() {
+        let (points, per_cell) = (Points { cells: 16, seed: 8 }, 16);
+        let mut dispatched = vec![Entry::default(); 16 * per_cell * per_cell];
+        let mut plain = dispatched.clone();
+        let row = |entries| CellRow { points, row: 3, per_cell, entries };
+        pulp::Arch::new().dispatch(row(&mut dispatched));
+        row(&mut plain).with_simd(pulp::Scalar::new());
+        assert!(dispatched == plain && plain.iter().all(|&entry| entry != Entry::default()));
     }
 
     #[test]

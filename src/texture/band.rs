@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::brush::Painted;
+use super::brush::{Painted, Shade};
 use super::deep::Deep;
 use super::fields::VeinRows;
 use super::guide::MixedRow;
@@ -139,7 +139,7 @@ impl SideRows<'_> {
         let (heights, bumps) = (&painted.heights[side], &painted.bumps[side]);
         let (roughness, transmission) = (&painted.roughness[side], &painted.transmission[side]);
         lay!(self.colour, [0; 4], |i| {
-            let [r, g, b] = [0, 1, 2].map(|k| shades[k][i]);
+            let [r, g, b] = Shade::at(shades, i).reflected;
             [byte(r), byte(g), byte(b), byte(alpha[i])]
         });
         lay!(self.height, 0, |i| whole::cut(heights[i] * per_height + 32768.0, 65535.0) as u16);
@@ -147,7 +147,7 @@ impl SideRows<'_> {
         lay!(self.roughness, 0, |i| byte(roughness[i]));
         lay!(self.transmission, 0, |i| byte(transmission[i]));
         lay!(self.translucency, [0; 3], |i| {
-            let [r, g, b] = [3, 4, 5].map(|k| shades[k][i]);
+            let [r, g, b] = Shade::at(shades, i).through;
             [byte(r), byte(g), byte(b)]
         });
         lay!(self.thickness, 0, |i| {
@@ -156,13 +156,13 @@ impl SideRows<'_> {
         lay!(self.vein_mask, 0, |i| byte(strip.vein_mask(i)));
         lay!(self.vein_order, 0, |i| strip.vein_order(i));
         lay!(self.deep_colour, [0; 4], |i| {
-            let [r, g, b] = [0, 1, 2].map(|k| shades[k][i]);
+            let [r, g, b] = Shade::at(shades, i).reflected;
             [word(r), word(g), word(b), word(alpha[i])]
         });
         lay!(self.deep_roughness, 0, |i| word(roughness[i]));
         lay!(self.deep_transmission, 0, |i| word(transmission[i]));
         lay!(self.deep_translucency, [0; 3], |i| {
-            let [r, g, b] = [3, 4, 5].map(|k| shades[k][i]);
+            let [r, g, b] = Shade::at(shades, i).through;
             [word(r), word(g), word(b)]
         });
         lay!(self.deep_vein_mask, 0, |i| word(strip.vein_mask(i)));
@@ -177,9 +177,7 @@ fn laid<T: Copy>(texels: &mut [T], side: usize, values: &[T; LANES]) {
         texels[..n].copy_from_slice(&values[..n]);
     } else {
         let mut mirrored = *values;
-        for i in 0..LANES {
-            mirrored[LANES - 1 - i] = values[i];
-        }
+        mirrored.reverse();
         texels[..n].copy_from_slice(&mirrored[LANES - n..]);
     }
 }

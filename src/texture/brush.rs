@@ -4,7 +4,7 @@ use super::map::{MapKind, MapSet};
 use super::optics::transmitted_share;
 use super::relief::Relief;
 use super::scene::Scene;
-use super::strip::{LANES, LEAST_SEEN, Lane, Strip};
+use super::strip::{LANES, LEAST_SEEN, Lane, Strip, texel};
 
 /// Light that comes back from a place and light that goes through it, as sRGB numbers 0–1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl Shade {
 
     #[inline(always)]
     pub(super) fn at(shades: &Shades, i: usize) -> Self {
-        let [r, g, b, tr, tg, tb] = [0, 1, 2, 3, 4, 5].map(|k| shades[k][i]);
+        let [r, g, b, tr, tg, tb] = texel(shades, i);
         Self { reflected: [r, g, b], through: [tr, tg, tb] }
     }
 

@@ -8,13 +8,14 @@
 mod disease;
 mod eaten;
 mod fall;
+mod texel;
 
 use std::collections::VecDeque;
 
 use glam::DVec2;
 
+pub(super) use self::texel::{Injury, WoundRow};
 use super::guide::{Guide, Lattice, Place, between, mixed};
-use super::tissue::smooth;
 use crate::margin::Margin;
 use crate::parameter::parameters;
 use crate::raster::Grid;
@@ -62,31 +63,6 @@ impl DamageSpec {
     }
 }
 
-/// What has been done to a texel's tissue, beside what is gone.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Injury {
-    /// How far it has died (0–1).
-    pub brown: f32,
-    /// How far what has died is walled off, dark with tannins (0–1).
-    pub dark: f32,
-    /// How far only its skins are left (0–1).
-    pub pale: f32,
-    /// How far those are blown apart over a mine (0–1).
-    pub blown: f32,
-}
-
-impl Injury {
-    #[inline(always)]
-    pub(super) fn array(self) -> [f32; 4] {
-        [self.brown, self.dark, self.pale, self.blown]
-    }
-
-    #[inline(always)]
-    pub(super) fn of([brown, dark, pale, blown]: [f32; 4]) -> Self {
-        Self { brown, dark, pale, blown }
-    }
-}
-
 /// A node of the wounds: depths in a gap, a skeletonised area, a spot, a mine and the line of frass in
 /// it (mm, negative outside), how brown and how pale. What has an edge is kept as a depth, so that the
 /// edge is as sharp as the texels, not as the nodes.
@@ -106,9 +82,6 @@ const SOUND: Wound = [FAR_MM, FAR_MM, FAR_MM, FAR_MM, FAR_MM, 0.0, 0.0];
 /// Far from any gap (mm).
 const FAR_MM: f32 = -10.0;
 
-/// Tissue this near to a gap has died (mm).
-const RIM_MM: f32 = 0.45;
-
 /// The wounds of a leaf on the nodes of its guide.
 #[derive(Debug)]
 pub(super) struct Wounds {
@@ -118,47 +91,6 @@ pub(super) struct Wounds {
     nodes: Vec<Wound>,
     rings: Vec<Vec<DVec2>>,
 }
-
-/// What a wound is at one texel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WoundAt {
-    /// Share of the tissue that is gone.
-    pub gone: f32,
-    /// Depth in a skeletonised area (mm).
-    pub bare: f32,
-    /// Depth in a spot (mm).
-    spot: f32,
-    /// Depth in a mine, and in the frass along it (mm).
-    mine: [f32; 2],
-    injury: Injury,
-}
-
-impl WoundAt {
-    /// What has been done to the tissue, whose areoles and grain stand so high (−1 – 1): they make the
-    /// edges uneven, since disease and its eaters go from cell to cell.
-    #[inline]
-    pub(super) fn injury(&self, areole: f32, grain: f32, per_mm: f32) -> Injury {
-        let Injury { mut brown, mut dark, mut pale, .. } = self.injury;
-        brown += 1.4 * brown * (1.0 - brown) * (areole + 0.6 * grain);
-        // Half a texel of softness, or as much as tissue has.
-        let per_mm = per_mm.min(MOST_SHARP_PER_MM);
-        let within = |depth: f32| (0.5 + depth * per_mm).clamp(0.0, 1.0);
-        let mined = within(self.mine[0] + 0.03 * grain);
-        pale = pale.max(mined);
-        brown = brown.max(mined * within(self.mine[1] + 0.04 * grain) * (0.6 + 0.3 * grain));
-        // A dark rim around what has dried out.
-        let depth = self.spot + 0.05 * grain + 0.08 * areole;
-        let spot = within(depth);
-        let dry = smooth(0.12, 0.5, depth);
-        brown = brown.max(spot * (1.0 - 0.5 * dry));
-        dark = dark.max(spot * (1.0 - smooth(0.1, 0.34, depth)));
-        pale = pale.max(spot * dry);
-        Injury { brown: brown.clamp(0.0, 1.0), dark, pale: pale.clamp(0.0, 1.0), blown: mined }
-    }
-}
-
-/// No edge of an injury is sharper than this: a fiftieth of a millimetre is a cell.
-const MOST_SHARP_PER_MM: f32 = 50.0;
 
 impl Wounds {
     /// The wounds of a leaf.
@@ -193,7 +125,7 @@ impl Wounds {
         let lower = &self.nodes[i * self.side..(i + 1) * self.side];
         let upper = &self.nodes[(i + 1) * self.side..(i + 2) * self.side];
         let nodes = lower.iter().zip(upper).map(|(a, b)| mixed(a, b, t)).collect();
-        WoundRow { wounds: self, nodes }
+        WoundRow::new(self, nodes)
     }
 
     /// Whether only veins are left at a texel.
@@ -226,36 +158,6 @@ fn rings(nodes: &[Wound], guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>
         ring
     };
     contours(&field, 0.0).into_iter().map(in_mm).collect()
-}
-
-/// The wounds along one row of the texture.
-#[derive(Debug)]
-pub(super) struct WoundRow<'a> {
-    wounds: &'a Wounds,
-    nodes: Vec<Wound>,
-}
-
-impl WoundRow<'_> {
-    /// The wound at column `x`.
-    #[inline]
-    pub(super) fn at(&self, x: usize) -> WoundAt {
-        let (i, t) = between(x, self.wounds.per_texel, self.nodes.len());
-        let [gone, bare, spot, mine, frass, brown, pale] =
-            mixed(&self.nodes[i], &self.nodes[i + 1], t);
-        let rim = 1.0 - (-gone / RIM_MM).clamp(0.0, 1.0);
-        WoundAt {
-            gone: (0.5 + gone * self.wounds.per_mm).clamp(0.0, 1.0),
-            bare,
-            spot,
-            mine: [mine, frass],
-            injury: Injury {
-                brown: brown.max(0.85 * rim * rim).clamp(0.0, 1.0),
-                dark: rim.powi(6),
-                pale: pale.clamp(0.0, 1.0),
-                blown: 0.0,
-            },
-        }
-    }
 }
 
 /// A blade that is being hurt.

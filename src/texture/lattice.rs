@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 use super::brush::Shades;
 use super::pigment::Albedo;
 use super::spectrum::{Spectrum, Tabulated, encoded};
-use super::strip::{LANES, Lane};
+use super::strip::{LANES, Lane, texel};
 use crate::geometry::whole;
 
 /// Nodes on each axis.
@@ -202,9 +202,8 @@ impl Lattice {
             self.read(&lanes, &mut seen);
             let mut better = None;
             for i in 0..10 {
-                let seen = seen.map(|lane| lane[i]);
-                let tried: [f32; 5] = std::array::from_fn(|k| lanes[k][i]);
-                let far = off(tried, &seen);
+                let tried = texel(&lanes, i);
+                let far = off(tried, &texel(&seen, i));
                 if far < least {
                     (least, better) = (far, Some(tried));
                 }
@@ -231,7 +230,7 @@ mod tests {
         fn at(&self, amounts: [f32; 5]) -> [f32; 6] {
             let mut colours = [[0.0; LANES]; 6];
             self.read(&amounts.map(|amount| [amount; LANES]), &mut colours);
-            colours.map(|lane| lane[LANES - 1])
+            texel(&colours, LANES - 1)
         }
     }
 

@@ -15,6 +15,7 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::strip::{LANES, Lane};
+use super::tissue;
 use crate::geometry::{noise, whole};
 
 /// An entry is at most so many texels wide, as far as [`ENTRIES`] go.
@@ -40,6 +41,8 @@ const STEPS: f32 = 31.0;
 /// A net, by a patch of it.
 #[derive(Debug)]
 pub(super) struct Net {
+    /// How much of it the texels show, more than 0 to 1.
+    pub(super) shown: f32,
     /// Width of an entry (mm).
     entry_mm: f32,
     /// A patch has so many entries a side, a power of two.
@@ -88,8 +91,12 @@ impl Entry {
 
 impl Net {
     /// A net of cells of this size (mm), of which so many, a power of two, make a side of the patch, as a texture of so
-    /// many pixels to the millimetre shows it.
-    pub(super) fn new(size_mm: f32, cells: usize, per_mm: f32, seed: u32) -> Self {
+    /// many pixels to the millimetre shows it; none where it is finer than the texels.
+    pub(super) fn new(size_mm: f32, cells: usize, per_mm: f32, seed: u32) -> Option<Self> {
+        let shown = tissue::shown(size_mm, per_mm);
+        if shown == 0.0 {
+            return None;
+        }
         debug_assert!(cells.is_power_of_two(), "cells are counted round by their bits");
         let wanted = (size_mm * per_mm / ENTRY_TEXELS) as usize;
         let [least, most] = ENTRIES;
@@ -101,7 +108,8 @@ impl Net {
             pulp::Arch::new().dispatch(CellRow { points, row: row as i32, per_cell, entries });
         });
         let per_cell = per_cell as f32;
-        Self { entry_mm: size_mm / per_cell, side, step: FARTHEST / DISTANCES * per_cell, entries }
+        let step = FARTHEST / DISTANCES * per_cell;
+        Some(Self { shown, entry_mm: size_mm / per_cell, side, step, entries })
     }
 
     /// The net at some places (mm): distance to the border of the areole (mm), and a number of the areole, 0–1.
@@ -265,7 +273,7 @@ mod tests {
     fn a_net_is_that_of_a_full_search() {
         // Cells of four, of sixteen and of two hundred texels.
         for (size_mm, per_mm) in [(0.27, 15.0), (0.85, 19.0), (2.1, 95.0)] {
-            let net = Net::new(size_mm, 16, per_mm, 5);
+            let net = Net::new(size_mm, 16, per_mm, 5).expect("it is shown");
             let points = Points { cells: 16, seed: 5 };
             let mut rng = Seed(3).stream(Stage::Tissue);
             let (mut exact, mut wrong, mut asked) = (0, 0, 0);
@@ -315,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_net_repeats_after_its_cells_and_not_before() {
-        let net = Net::new(1.0, 16, 8.0, 9);
+        let net = Net::new(1.0, 16, 8.0, 9).expect("it is shown");
         let at = |shift: f32| {
             let places =
                 [0.37_f32, 0.11].map(|step| std::array::from_fn(|i| shift + step * i as f32));

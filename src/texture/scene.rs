@@ -158,7 +158,10 @@ impl Scene {
             relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
             maps: paint.maps,
-            nets: nets(per_mm as f32, tissue),
+            nets: [0, 1, 2].map(|k| {
+                let (size, cells) = (tissue::MESH_MM[k], tissue::CELLS[k]);
+                Net::new(size, cells, per_mm as f32, tissue ^ (0x51 + k as u32))
+            }),
             stalk,
             seed: tissue,
         }
@@ -240,15 +243,6 @@ impl Scene {
         }
         cover
     }
-}
-
-/// The nets of a leaf that a texture of so many pixels to the millimetre shows.
-fn nets(per_mm: f32, seed: u32) -> [Option<Net>; 3] {
-    [0, 1, 2].map(|k| {
-        let size = tissue::MESH_MM[k];
-        let shown = tissue::shown(size, per_mm) > 0.0;
-        shown.then(|| Net::new(size, tissue::CELLS[k], per_mm, seed ^ (0x51 + k as u32)))
-    })
 }
 
 /// Where the speckles lie: darts on the blade, the same for both sides.

@@ -21,6 +21,12 @@ pub(super) const LANES: usize = 64;
 /// A number of every texel of a strip.
 pub(super) type Lane = [f32; LANES];
 
+/// Several numbers of one texel.
+#[inline(always)]
+pub(super) fn texel<const N: usize>(lanes: &[Lane; N], i: usize) -> [f32; N] {
+    std::array::from_fn(|k| lanes[k][i])
+}
+
 /// Fibres are longer than wide by the inverse of this.
 const FIBRE_STRETCH: f32 = 0.08;
 
@@ -177,12 +183,11 @@ impl Strip {
             };
             let (lines, tones) = (&mut self.lines[k], &mut self.tones[k]);
             net.along(&bent, &mut distance, &mut number);
-            let shown = tissue::shown(tissue::MESH_MM[k], scene.per_mm);
             let [none, full] = tissue::AWAY_MM[k];
             let line = tissue::LINE_MM[k] * scene.per_mm;
             let half = (0.7 * line).max(0.7);
             for i in 0..LANES {
-                let shown = shown * smooth(none, full, self.guide[2][i]);
+                let shown = net.shown * smooth(none, full, self.guide[2][i]);
                 lines[i] = shown * stroke_share(distance[i] * scene.per_mm, line, half);
                 tones[i] = shown * (2.0 * number[i] - 1.0);
             }
@@ -214,7 +219,7 @@ impl Strip {
             let (areole, grain) = (self.tones[tissue::AREOLE][i], self.grain[i]);
             let mut injury = wound.injury(areole, grain, scene.per_mm);
             if wound.bare > FAR_OUTSIDE_MM && bare > 0.0 {
-                let [third, fourth, fifth] = [0, 1, 2].map(|k| self.lines[k][i]);
+                let [third, fourth, fifth] = texel(&self.lines, i);
                 let net = third.max(0.9 * fourth).max(0.5 * fifth);
                 let kept = (1.6 * self.vein.cover[i]).max(1.5 * net).min(1.0);
                 self.blade[i] *= 1.0 - bare * (1.0 - kept);
@@ -249,7 +254,7 @@ impl Strip {
 
     #[inline(always)]
     fn place(&self, i: usize) -> Place {
-        Place::of(std::array::from_fn(|k| self.guide[k][i]))
+        Place::of(texel(&self.guide, i))
     }
 
     #[inline(always)]
@@ -278,30 +283,34 @@ impl Strip {
     #[inline(always)]
     pub(super) fn tissue(&self, i: usize) -> Tissue {
         let (x, y) = (self.x[i], self.y);
-        let [season, chlorosis, death] = [0, 1, 2].map(|k| self.condition[k][i]);
         Tissue {
             place: self.place(i),
             vein: self.vein(i),
-            lines: [0, 1, 2].map(|k| self.lines[k][i]),
-            tones: [0, 1, 2].map(|k| self.tones[k][i]),
+            lines: texel(&self.lines, i),
+            tones: texel(&self.tones, i),
             grain: self.grain[i],
             from_base: (x * x + y * y).sqrt(),
-            condition: Condition { season, chlorosis, death },
+            condition: self.condition(i),
             injury: self.injury(i),
         }
+    }
+
+    #[inline(always)]
+    fn condition(&self, i: usize) -> Condition {
+        let [season, chlorosis, death] = texel(&self.condition, i);
+        Condition { season, chlorosis, death }
     }
 
     /// What has been done to a texel.
     #[inline(always)]
     pub(super) fn injury(&self, i: usize) -> Injury {
-        Injury::of([0, 1, 2, 3].map(|k| self.injured[k][i]))
+        Injury::of(texel(&self.injured, i))
     }
 
     /// How dry the tissue is, 0–1.
     #[inline(always)]
     pub(super) fn dryness(&self, i: usize) -> f32 {
-        let [season, chlorosis, death] = [0, 1, 2].map(|k| self.condition[k][i]);
-        Condition { season, chlorosis, death }.dryness().max(self.injury(i).brown)
+        self.condition(i).dryness().max(self.injury(i).brown)
     }
 
     /// How much of a texel is vein; none where nothing of the leaf is seen.

@@ -14,7 +14,7 @@ use crate::raster::color::Tint;
 use crate::texture::brush::{Shade, Shades};
 use crate::texture::lattice::{self, Lattice};
 use crate::texture::petiole::StalkAt;
-use crate::texture::strip::{LANES, Lane, Strip};
+use crate::texture::strip::{LANES, Lane, Strip, texel};
 use crate::texture::tissue::{AREOLE, smooth};
 
 /// Amounts at one place: chlorophyll, carotenoid, anthocyanin, brown, structure.
@@ -158,7 +158,7 @@ impl Mixer {
                 }
                 let mut seen = [[0.0; LANES]; 6];
                 self.lattice.read(&lanes, &mut seen);
-                colours.extend((0..mixes.len()).map(|i| seen.map(|lane| lane[i])));
+                colours.extend((0..mixes.len()).map(|i| texel(&seen, i)));
             }
             for (change, pair) in changes.iter_mut().zip(colours.windows(2)) {
                 let channels = pair[0].iter().zip(&pair[1]);
@@ -186,7 +186,7 @@ impl Mixer {
             if self.sound {
                 (tissue.condition, tissue.injury) = Default::default();
             }
-            let turned = Turned::of(std::array::from_fn(|k| turned[k][i]));
+            let turned = Turned::of(texel(&turned, i));
             let lamina = self.lamina(&tissue, &turned);
             let vein = self.vein(&tissue, &lamina);
             // A vein is pale and would let much light through, but a large one is a cord.

@@ -6,7 +6,7 @@ use crate::margin::{self, Margin};
 use crate::observer::Observer;
 use crate::seed::Seed;
 use crate::spec::LeafSpec;
-use crate::texture::{self, Paint, TextureSet};
+use crate::texture::{Canvas, Easel, Paint, TextureSet};
 use crate::veins::{self, Venation};
 
 /// A blade with its veins, not painted yet.
@@ -43,6 +43,37 @@ pub fn grow(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<
     Ok(Grown { margin: blade.finished().clone(), venation })
 }
 
+/// Paints a grown leaf under one spec after another: a slider, a film, all sizes of a leaf. See [`Easel`].
+#[derive(Debug)]
+pub struct Painter<'a>(Easel<'a>);
+
+impl<'a> Painter<'a> {
+    /// For a leaf that has grown from this seed.
+    #[must_use]
+    pub fn new(grown: &'a Grown, seed: Seed) -> Self {
+        Self(Easel::new(&grown.margin, &grown.venation, seed))
+    }
+
+    /// Lays down pictures that nobody looks at any more, of this leaf or of another: the next ones are painted over
+    /// them.
+    pub fn take_back(&mut self, canvas: impl Into<Canvas>) {
+        self.0.take_back(canvas);
+    }
+
+    /// Paints the leaf: the same bytes as [`paint`].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Texture`].
+    pub fn paint(
+        &mut self,
+        spec: &LeafSpec,
+        observer: &mut dyn Observer,
+    ) -> Result<TextureSet, Error> {
+        Ok(self.0.paint(&settings(spec)?, observer)?)
+    }
+}
+
 /// Paints a grown leaf.
 ///
 /// # Errors
@@ -54,7 +85,12 @@ pub fn paint(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<TextureSet, Error> {
-    let paint = Paint {
+    Painter::new(grown, seed).paint(spec, observer)
+}
+
+/// What painting reads of a spec.
+fn settings(spec: &LeafSpec) -> Result<Paint<'_>, Error> {
+    Ok(Paint {
         texture: &spec.texture,
         petiole: &spec.petiole,
         colour: &spec.colour,
@@ -64,8 +100,7 @@ pub fn paint(
         maps: spec.output.resolve()?.planes(),
         // A tenth of the auxin spawn rate (Foster, appendix B.3).
         default_speckles: (spec.veins.spawn_rate / 10.0).round() as u64,
-    };
-    Ok(texture::paint(&paint, &grown.margin, &grown.venation, seed, observer)?)
+    })
 }
 
 /// Makes a whole leaf.

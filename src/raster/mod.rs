@@ -101,6 +101,16 @@ impl<T: Copy + Default + Send> Grid<T> {
     }
 }
 
+impl<T: Clone + Default> Grid<T> {
+    /// A square of this side with anything in it: this one if it has that side, else a new one.
+    pub(crate) fn or_new(self, side: usize) -> Self {
+        if (self.width, self.height) == (side, side) {
+            return self;
+        }
+        Self::filled(side, side, T::default())
+    }
+}
+
 impl<T: Copy> Grid<T> {
     /// Mirrored left to right.
     #[must_use]

@@ -43,7 +43,7 @@ pub(super) struct Scratch {
 /// A band of rows to be painted, with whatever vector instructions the processor has: no result depends
 /// on which, since every number is rounded alike.
 pub(super) struct Band<'a> {
-    pub(super) scene: &'a Scene,
+    pub(super) scene: &'a Scene<'a>,
     pub(super) number: usize,
     pub(super) rows: Range<usize>,
     pub(super) sides: (SideRows<'a>, SideRows<'a>),
@@ -57,36 +57,50 @@ impl pulp::WithSimd for Band<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<Range<usize>> {
         let Self { scene, number, rows, sides, scratch } = self;
-        let size = scene.size;
-        let cover = scene.blade_cover(rows.clone());
-        let stalk = scene.stalk.rows(&scene.frame, size, rows.clone());
+        let size = scene.layout.size;
+        let cover = scene.layout.blade_cover(rows.clone());
+        let stalk = scene.layout.stalk.rows(&scene.layout.frame, size, rows.clone());
         let spans = spans(&cover, stalk.as_deref(), size);
+        let (mut front, mut back) = sides;
+        // Mirrored with the picture: what lies right in front lies left behind.
+        let behind = |line: usize, columns: &Range<usize>| {
+            (line + 1) * size - columns.end..(line + 1) * size - columns.start
+        };
+        for (line, span) in spans.iter().enumerate() {
+            for bare in [0..span.start, span.end..size] {
+                back.clear(behind(line, &bare));
+                front.clear(line * size + bare.start..line * size + bare.end);
+            }
+        }
         let painted = spans.iter().filter(|span| !span.is_empty());
         let Some(columns) = painted.cloned().reduce(|a, b| a.start.min(b.start)..a.end.max(b.end))
         else {
             return spans;
         };
         let orders = scene.maps.has(MapKind::VeinOrder);
-        scene.strokes.fill(number, rows.clone(), &columns, orders, &mut scratch.veins);
+        scene.layout.strokes.fill(number, rows.clone(), &columns, orders, &mut scratch.veins);
         let at = |x: usize, y: usize| {
-            let [left, bottom] = scene.frame.min.as_vec2().to_array();
-            [left + x as f32 / scene.per_mm, bottom + (size - y) as f32 / scene.per_mm]
+            let [left, bottom] = scene.layout.frame.min.as_vec2().to_array();
+            [
+                left + x as f32 / scene.layout.per_mm,
+                bottom + (size - y) as f32 / scene.layout.per_mm,
+            ]
         };
         let mut grain = Grain::new(scene);
         let (mut strip, mut painted) = (Strip::empty(), Painted::empty());
-        let (mut front, mut back) = sides;
         for (y, span) in rows.clone().zip(&spans) {
             if span.is_empty() {
                 continue;
             }
             let line = y - rows.start;
-            let guide = scene.guide.row(y, &mut scratch.guide);
-            let wounds = scene.wounds.as_ref().map(|wounds| wounds.row(y));
+            let guide = scene.layout.guide.row(y, &mut scratch.guide);
+            let wounds = scene.layout.wounds.as_ref().map(|wounds| wounds.row(y));
             let [left, low] = at(span.start, y + 1);
-            let height = low + 0.5 / scene.per_mm;
-            grain.prepare(left, at(span.end, y)[0], height, scene.seed);
+            let height = low + 0.5 / scene.layout.per_mm;
+            grain.prepare(left, at(span.end, y)[0], height, scene.layout.seed);
             for start in span.clone().step_by(LANES) {
-                let texels = line * size + start..line * size + (start + LANES).min(span.end);
+                let columns = start..(start + LANES).min(span.end);
+                let texels = line * size + columns.start..line * size + columns.end;
                 strip.go_to(scene, start, texels.len(), y);
                 strip.read_guide(&guide);
                 strip.read_veins(&scratch.veins, line);
@@ -99,10 +113,7 @@ impl pulp::WithSimd for Band<'_> {
                 strip.read_condition(scene);
                 painted.paint(scene, &strip, scene.maps);
                 front.put(0, texels.clone(), scene, &strip, &painted);
-                // Mirrored with the picture: what lies right in front lies left behind.
-                let mirrored = |x: usize| 2 * line * size + size - x;
-                let behind = mirrored(texels.end)..mirrored(texels.start);
-                back.put(1, behind, scene, &strip, &painted);
+                back.put(1, behind(line, &columns), scene, &strip, &painted);
             }
         }
         spans
@@ -110,13 +121,30 @@ impl pulp::WithSimd for Band<'_> {
 }
 
 impl SideRows<'_> {
+    /// Clears texels that no leaf covers, of planes that nothing is spread in.
+    fn clear(&mut self, texels: Range<usize>) {
+        fn zero<T: Copy + Default>(plane: &mut [T], texels: &Range<usize>) {
+            // A plane that is not kept has no texels.
+            if let Some(row) = plane.get_mut(texels.clone()) {
+                row.fill(T::default());
+            }
+        }
+        // Colour for its alpha.
+        zero(self.colour, &texels);
+        zero(self.deep_colour, &texels);
+        zero(self.thickness, &texels);
+        zero(self.vein_mask, &texels);
+        zero(self.vein_order, &texels);
+        zero(self.deep_vein_mask, &texels);
+    }
+
     /// Writes a strip to the planes that are kept; the back from right to left.
     #[inline(always)]
     fn put(
         &mut self,
         side: usize,
         texels: Range<usize>,
-        scene: &Scene,
+        scene: &Scene<'_>,
         strip: &Strip,
         painted: &Painted,
     ) {

@@ -74,7 +74,7 @@ impl Painted {
     }
 
     #[inline(always)]
-    pub(super) fn paint(&mut self, scene: &Scene, strip: &Strip, maps: MapSet) {
+    pub(super) fn paint(&mut self, scene: &Scene<'_>, strip: &Strip, maps: MapSet) {
         for i in 0..LANES {
             self.alpha[i] = strip.alpha(i);
         }
@@ -84,7 +84,7 @@ impl Painted {
                 let [front, back] = scene.relief.heights(&strip.ground(i));
                 (self.heights[0][i], self.heights[1][i]) = (front, back);
             }
-            if scene.wounds.is_some() {
+            if scene.layout.wounds.is_some() {
                 for i in 0..strip.len {
                     let [front, back] = scene.relief.raised(&strip.injury(i));
                     self.heights[0][i] += front;
@@ -109,7 +109,7 @@ impl Painted {
                 let blade = if self.alpha[i] < LEAST_SEEN { 0.0 } else { strip.blade[i] };
                 self.thickness[i] = scene.relief.thickness(&strip.ground(i)) * blade;
             }
-            if scene.wounds.is_some() {
+            if scene.layout.wounds.is_some() {
                 for i in 0..strip.len {
                     self.thickness[i] *= Relief::left(&strip.injury(i));
                 }
@@ -129,7 +129,7 @@ impl Painted {
     }
 
     /// Under the blade in front, over it behind.
-    fn add_stalk(&mut self, scene: &Scene, strip: &Strip) {
+    fn add_stalk(&mut self, scene: &Scene<'_>, strip: &Strip) {
         for i in 0..strip.len {
             let stalk = &strip.stalk[i];
             if stalk.cover == 0.0 {

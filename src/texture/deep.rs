@@ -47,14 +47,30 @@ impl Deep {
         })
     }
 
+    /// As [`SideMaps::unpainted`].
+    pub(super) fn unpainted(
+        used: Option<Box<Self>>,
+        size: usize,
+        maps: MapSet,
+    ) -> Option<Box<Self>> {
+        let kept = |map: MapKind| if maps.has(map) { size } else { 0 };
+        let used = used.or_else(|| Self::empty(0, maps)).filter(|_| maps.is_deep())?;
+        Some(Box::new(Self {
+            base_colour: used.base_colour.or_new(size),
+            roughness: used.roughness.or_new(kept(MapKind::Roughness)),
+            occlusion: used.occlusion.or_new(kept(MapKind::AmbientOcclusion)),
+            transmission: used.transmission.or_new(kept(MapKind::Orm)),
+            translucency: used.translucency.or_new(kept(MapKind::Translucency)),
+            vein_mask: used.vein_mask.or_new(kept(MapKind::VeinMask)),
+        }))
+    }
+
     /// As [`SideMaps::spread`].
     pub(super) fn spread(&mut self, empty: &Empty) {
-        empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {
-            texels.fill([r, g, b, 0]);
-        });
-        empty.fill(self.roughness.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
+        empty.fill(self.roughness.values_mut(), 0, |value| value);
+        empty.fill(self.transmission.values_mut(), 0, |value| value);
+        empty.fill(self.translucency.values_mut(), [0; 3], |value| value);
     }
 
     /// The bytes of a map, row by row, high bytes first; `None` for one that has no plane here.

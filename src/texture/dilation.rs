@@ -8,14 +8,14 @@ use std::ops::Range;
 use super::side::SideMaps;
 use super::spans::Spans;
 use crate::parallel::for_each_piece;
-use crate::raster::distance::{NearestByRows, runs_of};
+use crate::raster::distance::{NO_SITE, NearestByRows, runs_of};
 
 /// Empty texels of one row, and where what fills them is found.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     start: u16,
     end: u16,
-    /// Index of the texel, row by row.
+    /// Index of the texel, row by row; [`NO_SITE`] where no texel is fully covered.
     source: u32,
 }
 
@@ -51,9 +51,7 @@ impl Empty {
             let (row, span) = (colours.row(nearest.y()), spans.row(nearest.y()));
             let runs = &mut found[0];
             for bare in nearest.gaps() {
-                let beside = bare.start.saturating_sub(1)..(bare.end + 1).min(size);
-                nearest.runs(beside, |columns, source| {
-                    let columns = columns.start.max(bare.start)..columns.end.min(bare.end);
+                let mut fill = |columns: Range<usize>, source| {
                     let mut put = |gap: Range<usize>| {
                         if !gap.is_empty() {
                             runs.push(Run { start: gap.start as u16, end: gap.end as u16, source });
@@ -66,7 +64,16 @@ impl Empty {
                         put(gap);
                     }
                     put(columns.start.max(span.end).max(span.start)..columns.end);
+                };
+                let beside = bare.start.saturating_sub(1)..(bare.end + 1).min(size);
+                let mut spread = false;
+                nearest.runs(beside, |columns, source| {
+                    spread = true;
+                    fill(columns.start.max(bare.start)..columns.end.min(bare.end), source);
                 });
+                if !spread {
+                    fill(bare, NO_SITE);
+                }
             }
         });
         let starts = std::iter::once(0).chain(rows.iter().scan(0, |sum, row| {
@@ -76,11 +83,13 @@ impl Empty {
         Self { size, rows: starts.collect(), runs: rows.concat(), mirrored: false }
     }
 
-    /// Fills the empty texels of a plane; `put` lays the source's value.
+    /// Fills the empty texels of a plane with what `spread` makes of their sources; with `plain` where there is
+    /// none.
     pub(super) fn fill<T: Copy + Send + Sync>(
         &self,
         plane: &mut [T],
-        put: impl Fn(&mut [T], T) + Sync,
+        plain: T,
+        spread: impl Fn(T) -> T + Sync,
     ) {
         if plane.is_empty() {
             return;
@@ -88,8 +97,11 @@ impl Empty {
         // What is copied is written down first, so that the plane is free to change.
         let mirrored = |i: usize| i - i % self.size + self.size - 1 - i % self.size;
         let source = |run: &Run| {
+            if run.source == NO_SITE {
+                return plain;
+            }
             let i = run.source as usize;
-            plane[if self.mirrored { mirrored(i) } else { i }]
+            spread(plane[if self.mirrored { mirrored(i) } else { i }])
         };
         let mut values = vec![plane[0]; self.runs.len()];
         for_each_piece(&mut values, RUNS, &|i, values| {
@@ -103,7 +115,7 @@ impl Empty {
                 let (start, end) = (usize::from(run.start), usize::from(run.end));
                 let texels =
                     if self.mirrored { self.size - end..self.size - start } else { start..end };
-                put(&mut row[texels], value);
+                row[texels].fill(value);
             }
         });
     }

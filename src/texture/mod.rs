@@ -1,7 +1,7 @@
 //! Images of the blade: colour, coverage, height and normals of both sides.
 //!
 //! [`paint`] lays the leaf out on its texture, paints both sides band by band, spreads them over the
-//! empty texels, and reads normals and occlusion off the heights.
+//! empty texels, and reads normals and occlusion off the heights. An [`Easel`] does so again and again.
 //!
 //! A texel takes 19 bytes a side when every map of the default set is kept, so 8192² with both sides
 //! needs 2.6 GB, and 540 MB with the colour alone; `MapSet` keeps what the maps asked for need. The
@@ -12,15 +12,18 @@ pub mod atlas;
 mod band;
 mod banded;
 mod brush;
+mod canvas;
 mod chords;
 mod crumbs;
 pub mod damage;
 pub mod deep;
 mod dilation;
+mod easel;
 mod enhance;
 mod fields;
 mod guide;
 mod lattice;
+mod layout;
 pub mod map;
 pub mod mip;
 mod net;
@@ -42,19 +45,20 @@ mod strip;
 mod tissue;
 
 use crate::margin::Margin;
-use crate::observer::{Observer, Progress};
+use crate::observer::Observer;
 use crate::parameter::{OutsideLimits, Parameters, parameters, words};
 use crate::raster::Grid;
 use crate::seed::Seed;
 use crate::spelling::advice;
 use crate::units::TextureFrame;
 use crate::veins::Venation;
+pub use canvas::Canvas;
 use damage::DamageSpec;
+pub use easel::Easel;
 use map::{MapKind, MapSet};
 use petiole::PetioleSpec;
 use pigment::{Albedo, ColourSpec, StateSpec};
 use relief::ReliefSpec;
-use scene::Scene;
 pub use side::SideMaps;
 
 words! {
@@ -113,49 +117,7 @@ pub fn paint(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<TextureSet, TextureError> {
-    check(paint)?;
-    let mut report = |step| {
-        observer.report(Progress { stage: "painting", step, steps: 3, nodes: 0, sources: 0 });
-    };
-    report(0);
-    let mut paint = *paint;
-    if paint.texture.style == Style::Enhanced {
-        paint.maps = paint.maps.with(MapKind::VeinMask);
-    }
-    let paint = &paint;
-    let scene = Scene::new(paint, margin, venation, seed);
-    report(1);
-    let ([mut front, mut back], spans) = scene.paint();
-    if let Some(wounds) = &scene.wounds {
-        let bare = |x: usize, y: usize| wounds.is_bare(x, y);
-        crumbs::clear(&mut front, &mut back, &scene.whole(), bare);
-    }
-    report(2);
-    dilation::spread(&mut front, &mut back, &spans);
-    let per_mm = scene.frame().pixels_per_mm(scene.size) as f32;
-    let per_texel = scene.height_range_mm() as f32 / 65535.0 * per_mm;
-    for (side, spans) in [(&mut front, &spans), (&mut back, &spans.mirrored())] {
-        if paint.maps.has(MapKind::Normal) {
-            side.normal = Grid::filled(scene.size, scene.size, [0; 3]);
-            normals::fill(side, spans, per_texel);
-        }
-        if side.has(MapKind::AmbientOcclusion) {
-            occlusion::fill(side, spans, per_texel, per_mm);
-        }
-    }
-    let mut set = TextureSet {
-        frame: scene.frame(),
-        front,
-        back,
-        height_range_mm: scene.height_range_mm(),
-        thickness_range_mm: scene.thickness_range_mm(),
-        petiole_end: scene.petiole_end(),
-        albedo: paint.colour.albedo,
-        rings: scene.rings(),
-    };
-    finish(paint, &mut set, scene.seed);
-    report(3);
-    Ok(set)
+    Easel::new(margin, venation, seed).paint(paint, observer)
 }
 
 /// Refuses settings that a program made and under which nothing could be painted.
@@ -173,22 +135,22 @@ fn check(paint: &Paint<'_>) -> Result<(), TextureError> {
 }
 
 /// The pictures that are made from the others.
-fn finish(paint: &Paint<'_>, set: &mut TextureSet, noise: u32) {
+fn finish(paint: &Paint<'_>, maps: MapSet, set: &mut TextureSet, noise: u32) {
     let per_mm = set.frame.pixels_per_mm(set.front.size()) as f32;
     let enhanced = paint.texture.style == Style::Enhanced;
-    if enhanced || paint.maps.has(MapKind::Enhancement) {
+    if enhanced || maps.has(MapKind::Enhancement) {
         for side in [&mut set.front, &mut set.back] {
             let steps = enhance::steps(side, per_mm, noise);
             side.enhancement = enhance::montage(&steps);
             if enhanced {
                 enhance::replace(side, &steps);
             }
-            if !paint.maps.has(MapKind::Enhancement) {
+            if !maps.has(MapKind::Enhancement) {
                 side.enhancement = Grid::filled(0, 0, [0; 3]);
             }
         }
     }
-    if paint.maps.has(MapKind::Preview) {
+    if maps.has(MapKind::Preview) {
         set.front.preview = preview::lit(&set.front, &set.back);
     }
 }

@@ -25,7 +25,7 @@ const DIRECTIONS: [(i32, i32); 8] =
 /// Real grooves are steeper than a height map of few texels can be: their slopes count more.
 const EMPHASIS: f32 = 1.6;
 
-/// Fills the occlusion of a side from its heights where the leaf is; 255 elsewhere. One step of a
+/// Fills the occlusion of a side from its heights where the leaf is; with 255 elsewhere. One step of a
 /// height is `per_texel` texels high, and `per_mm` texels make a millimetre.
 pub(super) fn fill(side: &mut SideMaps, spans: &Spans, per_texel: f32, per_mm: f32) {
     let size = side.size();
@@ -48,6 +48,8 @@ fn fill_plane<T: Copy + Send>(
     let size = height.width();
     let fill_row = |sum: &mut Vec<f32>, (y, row): (usize, &mut [T])| {
         let (colours, columns) = (base_colour.row(y), spans.row(y));
+        row[..columns.start].fill(of(1.0));
+        row[columns.end..].fill(of(1.0));
         if columns.is_empty() {
             return;
         }
@@ -127,7 +129,7 @@ impl<T: Copy, F: Fn(f32) -> T> pulp::WithSimd for Row<'_, T, F> {
         let (sum, colours) = (&sum[first..end], &colours[first..end]);
         for ((texel, colour), hidden) in row[first..end].iter_mut().zip(colours).zip(sum) {
             let open = of(1.0 - hidden / DIRECTIONS.len() as f32);
-            *texel = if colour[3] > 0 { open } else { *texel };
+            *texel = if colour[3] > 0 { open } else { of(1.0) };
         }
     }
 }

@@ -1,131 +1,47 @@
-//! One leaf laid out on its texture, and painting it by bands of rows.
+//! What a leaf that is laid out looks like, and painting it by bands of rows.
 //!
 //! A band knows everything it needs, so bands run in parallel and in any order with the same
 //! bytes. What looks at neighbours, normals and occlusion, is made from the heights afterwards.
 
 use std::ops::Range;
 
-use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Paint;
 use super::band::{Band, Scratch, bands};
-use super::damage::Wounds;
-use super::fields::{Strokes, midrib};
-use super::guide::{Guide, Lattice, NODES_OF_WOUNDS, Reach};
-use super::map::{MapKind, MapSet};
-use super::net::Net;
+use super::canvas::Canvas;
+use super::layout::Layout;
+use super::map::MapSet;
 use super::optics::Optics;
-use super::petiole::Stalk;
-use super::pigment::{ColourType, Course, Pigments};
+use super::pigment::{Course, Pigments};
 use super::relief::Relief;
 use super::side::SideMaps;
 use super::spans::Spans;
 use super::tissue;
-use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
-use crate::raster::Grid;
-use crate::raster::color::byte;
-use crate::raster::coverage::{Capsule, polygon_rows, stroke_share};
 use crate::seed::{Seed, Stage};
-use crate::units::TextureFrame;
-use crate::veins::Venation;
 
-/// Rows painted at once on a texture of this side: enough that a vein is not looked at again for every
-/// few rows, few enough that what the veins are stays in the cache of a core.
-fn band_rows(size: usize) -> usize {
-    (BAND_TEXELS / size).clamp(8, 32)
-}
-
-/// At 21 bytes a texel 700 kB, in a cache of 1 MB.
-const BAND_TEXELS: usize = 1 << 15;
-
-/// A slit is open this wide (mm): the edges of torn tissue shrink back a little.
-const SLIT_MM: f64 = 0.15;
-
-/// The petiole is at least this share of its own width where it meets the blade.
-const NECK: f64 = 0.74;
-
-/// A midrib with this share of the radius at the base is the only primary.
-const LEADS: f64 = 0.9;
-
-pub(super) struct Scene {
-    pub(super) size: usize,
-    band: usize,
-    pub(super) frame: TextureFrame,
-    pub(super) per_mm: f32,
-    outline: Vec<DVec2>,
-    slits: Vec<Capsule>,
-    pub(super) strokes: Strokes,
-    pub(super) guide: Guide,
-    /// None where it is finer than the texels.
-    pub(super) nets: [Option<Net>; 3],
-    pub(super) stalk: Stalk,
+pub(super) struct Scene<'a> {
+    pub(super) layout: &'a Layout,
     pub(super) stalk_length: f32,
     pub(super) pigments: Pigments,
     pub(super) course: Course,
-    pub(super) wounds: Option<Wounds>,
     pub(super) relief: Relief,
     pub(super) optics: Optics,
     pub(super) maps: MapSet,
-    pub(super) seed: u32,
 }
 
-impl Scene {
-    pub(super) fn new(paint: &Paint<'_>, margin: &Margin, venation: &Venation, seed: Seed) -> Self {
-        let size = paint.texture.size_px as usize;
-        let widest = venation.radii().iter().copied().fold(0.0, f64::max);
-        let graph = venation.graph();
-        let root = (0..graph.len() as u32)
-            .filter(|&node| graph.parent(node).is_none())
-            .map(|node| venation.radii()[node as usize])
-            .fold(0.0, f64::max);
-        // A thin midrib widens towards the petiole, and a leaf without veins still hangs on one.
-        let stalked = paint.petiole.length_mm > 0.0;
-        let neck = if stalked { root.max(NECK * 0.5 * paint.petiole.width_mm) } else { root };
-        // Into a shield the petiole runs from below: it goes on in no vein, and widens none.
-        let goes_on = !margin.is_peltate();
-        let midrib = if goes_on { midrib(venation) } else { Vec::new() };
-        // One of several primaries does not lead the petiole.
-        let leads =
-            midrib.get(1).is_some_and(|&node| venation.radii()[node as usize] > LEADS * root);
-        let midrib: Vec<DVec2> =
-            midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
-        let stalk = Stalk::new(paint.petiole, neck, &midrib, leads);
-        let bounds = margin.bounds().joined(stalk.bounds());
-        let frame = TextureFrame::around(bounds.min, bounds.max, paint.texture.gutter);
-        let per_mm = frame.pixels_per_mm(size);
-        let tissue = seed.stream(Stage::Tissue).bits() as u32;
-        let speckles = speckles(paint, margin, seed);
-        let from_veins = paint.colour.r#type == ColourType::FromVeins;
-        let reach = Reach {
-            vein_spread: paint.colour.vein_spread,
-            vein_strength: if from_veins { 1.0 } else { paint.colour.undertone as f32 },
-            // Else a net leaves nothing of the first colour.
-            faint_veins: from_veins,
-            speckles: &speckles,
-            speckle_mm: paint.colour.spread_mm,
-        };
-        let pixel = |p: &DVec2| frame.pixel_from_leaf(*p, size);
-        let slits = margin.cuts().iter().flat_map(|cut| cut.windows(2)).map(|w| {
-            let radius = (0.5 * SLIT_MM * per_mm) as f32;
-            let [a, b] = [pixel(&w[0]).as_vec2(), pixel(&w[1]).as_vec2()];
-            Capsule { a, b, radius_a: radius, radius_b: radius }
-        });
-        let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], per_mm as f32);
-        let side = Guide::side_for(size);
-        let guide = Guide::new(side, margin, venation, &frame, size, &reach, tissue);
-        let hurt = !paint.damage.is_none();
-        let wounds = hurt.then(|| {
-            // Nobody asks the finer one for colours.
-            let finer = (side < NODES_OF_WOUNDS).then(|| {
-                let reach = &Reach::NONE;
-                Guide::new(NODES_OF_WOUNDS, margin, venation, &frame, size, reach, tissue)
-            });
-            let guide = finer.as_ref().unwrap_or(&guide);
-            let lattice = Lattice { frame: &frame, side: guide.side() };
-            Wounds::new(paint.damage, margin, venation, guide, &lattice, per_mm as f32, seed)
-        });
+/// The petiole's colour runs into the midrib over so many of its radii.
+const PETIOLE_REACH: f32 = 6.0;
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(
+        layout: &'a Layout,
+        paint: &Paint<'_>,
+        maps: MapSet,
+        margin: &Margin,
+        seed: Seed,
+    ) -> Self {
         let sun_deg = seed.stream(Stage::Senescence).between(0.0, 360.0);
         let course = Course::new(
             &paint.colour.pigments.autumn,
@@ -134,50 +50,23 @@ impl Scene {
             margin.area_mm2(),
             sun_deg,
         );
-        let petiole_reach = 6.0 * neck as f32;
-        let band = band_rows(size);
+        let shown = tissue::shown(tissue::MESH_MM[tissue::AREOLE], layout.per_mm);
+        let Layout { widest, neck, stalk, wounds, .. } = layout;
         Self {
-            size,
-            band,
-            frame,
-            per_mm: per_mm as f32,
-            outline: margin.outline().iter().map(pixel).collect(),
-            slits: slits.collect(),
-            strokes: Strokes::new(venation, if goes_on { neck } else { 0.0 }, &frame, size, band),
-            guide,
-            wounds,
+            layout,
             course,
             stalk_length: paint.petiole.length_mm as f32,
             pigments: Pigments::new(
                 paint.colour,
                 paint.state,
                 &paint.petiole.colour,
-                petiole_reach,
-                hurt,
+                PETIOLE_REACH * *neck as f32,
+                wounds.is_some(),
             ),
-            relief: Relief::new(paint.relief, widest, neck, stalk.widest(), shown),
+            relief: Relief::new(paint.relief, *widest, *neck, stalk.widest(), shown),
             optics: Optics::new(paint.relief),
-            maps: paint.maps,
-            nets: [0, 1, 2].map(|k| {
-                let (size, cells) = (tissue::MESH_MM[k], tissue::CELLS[k]);
-                Net::new(size, cells, per_mm as f32, tissue ^ (0x51 + k as u32))
-            }),
-            stalk,
-            seed: tissue,
+            maps,
         }
-    }
-
-    pub(super) fn frame(&self) -> TextureFrame {
-        self.frame
-    }
-
-    pub(super) fn petiole_end(&self) -> DVec2 {
-        self.stalk.end()
-    }
-
-    /// Outline and gaps of a damaged blade (mm); none where it is whole.
-    pub(super) fn rings(&self) -> Vec<Vec<DVec2>> {
-        self.wounds.as_ref().map_or_else(Vec::new, |wounds| wounds.rings().to_vec())
     }
 
     /// From the lowest to the highest place that the height maps can show (mm).
@@ -192,79 +81,17 @@ impl Scene {
 
     /// Both sides, empty where the leaf is not, heights without their normals, the back mirrored; and
     /// where in the front it is.
-    pub(super) fn paint(&self) -> ([SideMaps; 2], Spans) {
-        let size = self.size;
-        // Normals are made from the heights at the end.
-        let maps = self.maps.without(MapKind::Normal);
-        let mut sides = [SideMaps::empty(size, maps), SideMaps::empty(size, maps)];
+    pub(super) fn paint(&self, canvas: &mut Canvas) -> ([SideMaps; 2], Spans) {
+        let Layout { size, band, .. } = *self.layout;
+        let mut sides = canvas.take(size, self.maps);
         let [front, back] = &mut sides;
-        let bands: Vec<_> =
-            bands(front, self.band * size).zip(bands(back, self.band * size)).collect();
+        let bands: Vec<_> = bands(front, band * size).zip(bands(back, band * size)).collect();
         let paint = |scratch: &mut Scratch, (i, sides): (usize, _)| {
-            let rows = i * self.band..((i + 1) * self.band).min(size);
+            let rows = i * band..((i + 1) * band).min(size);
             pulp::Arch::new().dispatch(Band { scene: self, number: i, rows, sides, scratch })
         };
         let spans: Vec<Vec<Range<usize>>> =
             bands.into_par_iter().enumerate().map_init(Scratch::default, paint).collect();
         (sides, Spans::of(spans.concat()))
     }
-
-    /// How far the leaf covered the texels before there were wounds (255 for all).
-    pub(super) fn whole(&self) -> Grid<u8> {
-        let size = self.size;
-        let rows = |first: usize| {
-            let rows = first..(first + self.band).min(size);
-            let blade = self.blade_cover(rows.clone());
-            let stalk = self.stalk.rows(&self.frame, size, rows);
-            let seen = |(i, blade): (usize, f32)| {
-                let stalk = stalk.as_ref().map_or(0.0, |stalk| stalk[i].cover);
-                byte(1.0 - (1.0 - blade) * (1.0 - stalk))
-            };
-            blade.into_iter().enumerate().map(seen).collect::<Vec<u8>>()
-        };
-        let bands: Vec<Vec<u8>> =
-            (0..size.div_ceil(self.band)).into_par_iter().map(|i| rows(i * self.band)).collect();
-        Grid::from_values(size, size, bands.concat())
-    }
-
-    pub(super) fn blade_cover(&self, rows: Range<usize>) -> Vec<f32> {
-        let mut cover = polygon_rows(&self.outline, self.size, rows.clone());
-        for slit in &self.slits {
-            let [columns, lines] = slit.pixels(slit.widest() + 0.5, self.size, rows.clone());
-            for y in lines {
-                for x in columns.clone() {
-                    let centre = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                    let distance = slit.nearest(centre).0.sqrt();
-                    let open = stroke_share(distance, slit.widest(), 0.5);
-                    let texel = &mut cover[(y - rows.start) * self.size + x];
-                    *texel = texel.min(1.0 - open);
-                }
-            }
-        }
-        cover
-    }
-}
-
-/// Where the speckles lie: darts on the blade, the same for both sides.
-fn speckles(paint: &Paint<'_>, margin: &Margin, seed: Seed) -> Vec<DVec2> {
-    let count = match paint.colour.speckle_count {
-        0 => paint.default_speckles,
-        count => count,
-    };
-    let inside = SegmentIndex::of_polygon(margin.outline());
-    let bounds = margin.bounds();
-    let mut rng = seed.stream(Stage::Speckles);
-    let mut speckles = Vec::new();
-    // A bound, so that a blade which is a mere sliver of its box ends with fewer, not never.
-    for _ in 0..count.saturating_mul(100) {
-        if speckles.len() as u64 == count {
-            break;
-        }
-        let x = rng.between(bounds.min.x, bounds.max.x);
-        let p = DVec2::new(x, rng.between(bounds.min.y, bounds.max.y));
-        if inside.contains(p) {
-            speckles.push(p);
-        }
-    }
-    speckles
 }

@@ -9,6 +9,10 @@ use crate::raster::Grid;
 /// The normal of a plain surface.
 pub(super) const FLAT: [u8; 3] = [128, 128, 255];
 
+/// The plain blade, in heights and in Foster's bump.
+const PLAIN_HEIGHT: u16 = 1 << 15;
+const PLAIN_BUMP: u8 = 128;
+
 /// The maps of one side.
 ///
 /// # Guarantees
@@ -59,7 +63,7 @@ impl SideMaps {
         Self {
             base_colour: Grid::filled(size, size, [0; 4]),
             normal: plane(size, maps, MapKind::Normal, FLAT),
-            height: plane(size, maps, MapKind::Height, 1 << 15),
+            height: plane(size, maps, MapKind::Height, PLAIN_HEIGHT),
             roughness: plane(size, maps, MapKind::Roughness, 0),
             occlusion: plane(size, maps, MapKind::AmbientOcclusion, u8::MAX),
             transmission: plane(size, maps, MapKind::Orm, 0),
@@ -67,11 +71,34 @@ impl SideMaps {
             thickness: plane(size, maps, MapKind::Thickness, 0),
             vein_mask: plane(size, maps, MapKind::VeinMask, 0),
             vein_order: plane(size, maps, MapKind::VeinOrder, 0),
-            bump: plane(size, maps, MapKind::Bump, 128),
+            bump: plane(size, maps, MapKind::Bump, PLAIN_BUMP),
             // Made from the others at the end.
             preview: Grid::filled(0, 0, [0; 3]),
             enhancement: Grid::filled(0, 0, [0; 3]),
             deep: Deep::empty(size, maps),
+        }
+    }
+
+    /// The maps of a leaf that is yet to be painted, with anything in them: planes of `used` that fit, else new
+    /// ones.
+    pub(super) fn unpainted(used: Option<Self>, size: usize, maps: MapSet) -> Self {
+        let used = used.unwrap_or_else(|| Self::empty(0, maps));
+        let kept = |map: MapKind| if maps.has(map) { size } else { 0 };
+        Self {
+            base_colour: used.base_colour.or_new(size),
+            normal: used.normal.or_new(kept(MapKind::Normal)),
+            height: used.height.or_new(kept(MapKind::Height)),
+            roughness: used.roughness.or_new(kept(MapKind::Roughness)),
+            occlusion: used.occlusion.or_new(kept(MapKind::AmbientOcclusion)),
+            transmission: used.transmission.or_new(kept(MapKind::Orm)),
+            translucency: used.translucency.or_new(kept(MapKind::Translucency)),
+            thickness: used.thickness.or_new(kept(MapKind::Thickness)),
+            vein_mask: used.vein_mask.or_new(kept(MapKind::VeinMask)),
+            vein_order: used.vein_order.or_new(kept(MapKind::VeinOrder)),
+            bump: used.bump.or_new(kept(MapKind::Bump)),
+            preview: used.preview.or_new(0),
+            enhancement: used.enhancement.or_new(0),
+            deep: Deep::unpainted(used.deep, size, maps),
         }
     }
 
@@ -178,16 +205,15 @@ impl SideMaps {
         }
     }
 
-    /// Fills the texels outside the leaf, each plane after its map's [`Outside`].
+    /// Fills the texels outside the leaf, each plane after its map's [`Outside`]; where there is nothing to spread,
+    /// as in [`Self::empty`].
     pub(super) fn spread(&mut self, empty: &Empty) {
-        empty.fill(self.base_colour.values_mut(), |texels, [r, g, b, _]| {
-            texels.fill([r, g, b, 0]);
-        });
-        empty.fill(self.height.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.roughness.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.transmission.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.translucency.values_mut(), |texels, value| texels.fill(value));
-        empty.fill(self.bump.values_mut(), |texels, value| texels.fill(value));
+        empty.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
+        empty.fill(self.height.values_mut(), PLAIN_HEIGHT, |value| value);
+        empty.fill(self.roughness.values_mut(), 0, |value| value);
+        empty.fill(self.transmission.values_mut(), 0, |value| value);
+        empty.fill(self.translucency.values_mut(), [0; 3], |value| value);
+        empty.fill(self.bump.values_mut(), PLAIN_BUMP, |value| value);
         if let Some(deep) = &mut self.deep {
             deep.spread(empty);
         }

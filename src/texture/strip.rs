@@ -47,8 +47,8 @@ pub(super) struct Grain {
 }
 
 impl Grain {
-    pub(super) fn new(scene: &Scene) -> Self {
-        Self { size_mm: tissue::grain_size(scene.per_mm), row: GradientRow::default() }
+    pub(super) fn new(scene: &Scene<'_>) -> Self {
+        Self { size_mm: tissue::grain_size(scene.layout.per_mm), row: GradientRow::default() }
     }
 
     /// Makes ready for a row at `y` between two ends (mm).
@@ -121,15 +121,15 @@ impl Strip {
 
     /// Goes to the texels `start..start + len` of row `y` of the texture.
     #[inline(always)]
-    pub(super) fn go_to(&mut self, scene: &Scene, start: usize, len: usize, y: usize) {
+    pub(super) fn go_to(&mut self, scene: &Scene<'_>, start: usize, len: usize, y: usize) {
         (self.start, self.len) = (start, len);
-        let mm = 1.0 / scene.per_mm;
-        let [left, bottom] = scene.frame.min.as_vec2().to_array();
+        let mm = 1.0 / scene.layout.per_mm;
+        let [left, bottom] = scene.layout.frame.min.as_vec2().to_array();
         let (left, first, last) = (left + 0.5 * mm, start as i32, len as i32 - 1);
         for i in 0..LANES {
             self.x[i] = left + (first + (i as i32).min(last)) as f32 * mm;
         }
-        self.y = bottom + (scene.size as f32 - y as f32 - 0.5) * mm;
+        self.y = bottom + (scene.layout.size as f32 - y as f32 - 0.5) * mm;
     }
 
     #[inline(always)]
@@ -169,7 +169,7 @@ impl Strip {
     /// Nets and grain.
     #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
-    pub(super) fn read_structure(&mut self, scene: &Scene, grain: &Grain) {
+    pub(super) fn read_structure(&mut self, scene: &Scene<'_>, grain: &Grain) {
         let (mut bent, mut distance, mut number) = ([[0.0; LANES]; 2], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             // The net is drawn out and bent by the tissue's own unevenness.
@@ -177,18 +177,18 @@ impl Strip {
             bent[0][i] = self.x[i] + BENT_MM[0][0] * middle + BENT_MM[0][1] * fine;
             bent[1][i] = self.y + BENT_MM[1][0] * middle + BENT_MM[1][1] * fine;
         }
-        for (k, net) in scene.nets.iter().enumerate() {
+        for (k, net) in scene.layout.nets.iter().enumerate() {
             let Some(net) = net else {
                 continue;
             };
             let (lines, tones) = (&mut self.lines[k], &mut self.tones[k]);
             net.along(&bent, &mut distance, &mut number);
             let [none, full] = tissue::AWAY_MM[k];
-            let line = tissue::LINE_MM[k] * scene.per_mm;
+            let line = tissue::LINE_MM[k] * scene.layout.per_mm;
             let half = (0.7 * line).max(0.7);
             for i in 0..LANES {
                 let shown = net.shown * smooth(none, full, self.guide[2][i]);
-                lines[i] = shown * stroke_share(distance[i] * scene.per_mm, line, half);
+                lines[i] = shown * stroke_share(distance[i] * scene.layout.per_mm, line, half);
                 tones[i] = shown * (2.0 * number[i] - 1.0);
             }
             if k == tissue::AREOLE {
@@ -202,22 +202,22 @@ impl Strip {
                 // The stalk is made of fibres: its grain is drawn out along it.
                 let along = self.stalk[i].along * FIBRE_STRETCH / (2.0 * size);
                 let across = self.x[i] / (2.0 * size);
-                let seed = scene.seed ^ 0x99;
+                let seed = scene.layout.seed ^ 0x99;
                 self.fibre[i] = crate::geometry::noise::gradient(across, along, seed);
             }
         }
     }
 
     /// What is gone, and what has been done to the rest.
-    pub(super) fn read_wounds(&mut self, scene: &Scene, row: &WoundRow<'_>) {
+    pub(super) fn read_wounds(&mut self, scene: &Scene<'_>, row: &WoundRow<'_>) {
         for i in 0..self.len {
             let wound = row.at(self.start + i);
             self.blade[i] *= 1.0 - wound.gone;
             // Of a skeletonised area the veins are left, and whole areoles at its border.
             let depth = wound.bare + 0.5 * self.tones[tissue::AREOLE][i];
-            let bare = (0.5 + 0.5 * depth * scene.per_mm).clamp(0.0, 1.0);
+            let bare = (0.5 + 0.5 * depth * scene.layout.per_mm).clamp(0.0, 1.0);
             let (areole, grain) = (self.tones[tissue::AREOLE][i], self.grain[i]);
-            let mut injury = wound.injury(areole, grain, scene.per_mm);
+            let mut injury = wound.injury(areole, grain, scene.layout.per_mm);
             if wound.bare > FAR_OUTSIDE_MM && bare > 0.0 {
                 let [third, fourth, fifth] = texel(&self.lines, i);
                 let net = third.max(0.9 * fourth).max(0.5 * fifth);
@@ -234,7 +234,7 @@ impl Strip {
     /// Where every place stands in the season.
     #[expect(clippy::needless_range_loop, reason = "several arrays go along together")]
     #[inline(always)]
-    pub(super) fn read_condition(&mut self, scene: &Scene) {
+    pub(super) fn read_condition(&mut self, scene: &Scene<'_>) {
         if scene.course.is_plain() {
             return;
         }

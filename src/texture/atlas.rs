@@ -6,11 +6,12 @@
 
 use glam::DVec2;
 
+use super::TextureSet;
+use super::dilation::Empty;
 use super::map::MapSet;
 use super::pigment::Albedo;
 use super::side::SideMaps;
 use super::spans::Spans;
-use super::{TextureSet, dilation};
 use crate::raster::Grid;
 use crate::units::TextureFrame;
 
@@ -112,7 +113,7 @@ impl AtlasSheet {
             }
         }
         let whole = Spans::whole(self.front.size());
-        dilation::spread(&mut self.front, &mut self.back, &whole);
+        Empty::of(&self.front, &whole).spread(&mut self.front, &mut self.back);
         TextureSet {
             frame: TextureFrame { min: DVec2::ZERO, side_mm: size as f64 / pixels_per_mm },
             front: self.front,

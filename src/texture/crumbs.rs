@@ -16,16 +16,8 @@ const SEEN: u8 = 128;
 /// What is cut off by less than a texel and as large as this share of its piece is no crumb.
 const LARGE: f64 = 0.01;
 
-/// Finds the crumbs and clears them on both sides, the back being mirrored. `whole` is how far the texels
-/// were covered (255 for all) before there were wounds, `bare` says where only veins are left: fine ones
-/// hold one another however faint.
-pub(super) fn clear(
-    front: &mut SideMaps,
-    back: &mut SideMaps,
-    whole: &Grid<u8>,
-    bare: impl Fn(usize, usize) -> bool,
-) {
-    let crumbs = find(&front.base_colour, whole, bare);
+/// Clears crumbs on both sides, the back being mirrored.
+pub(super) fn clear(front: &mut SideMaps, back: &mut SideMaps, crumbs: &[usize]) {
     let size = front.size();
     for i in crumbs {
         let (x, y) = (i % size, i / size);
@@ -34,7 +26,9 @@ pub(super) fn clear(
     }
 }
 
-fn find(
+/// The texels of a front that are crumbs. `whole` is how far the texels were covered (255 for all) before there
+/// were wounds, `bare` says where only veins are left: fine ones hold one another however faint.
+pub(super) fn find(
     picture: &Grid<[u8; 4]>,
     whole: &Grid<u8>,
     bare: impl Fn(usize, usize) -> bool,

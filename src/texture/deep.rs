@@ -4,7 +4,7 @@
 //! shares are painted as real numbers; where 16 bits are asked for they are kept so, beside the 8 bits
 //! that the preview and the cards take, on atlases and smaller levels too.
 
-use super::dilation::Empty;
+use super::dilation::Ground;
 use super::map::{MapKind, MapSet};
 use super::normals;
 use super::samples::{in_all, words, words_of};
@@ -66,11 +66,11 @@ impl Deep {
     }
 
     /// As [`SideMaps::spread`].
-    pub(super) fn spread(&mut self, empty: &Empty) {
-        empty.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
-        empty.fill(self.roughness.values_mut(), 0, |value| value);
-        empty.fill(self.transmission.values_mut(), 0, |value| value);
-        empty.fill(self.translucency.values_mut(), [0; 3], |value| value);
+    pub(super) fn spread(&mut self, ground: Ground<'_>) {
+        ground.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
+        ground.fill(self.roughness.values_mut(), 0, |value| value);
+        ground.fill(self.transmission.values_mut(), 0, |value| value);
+        ground.fill(self.translucency.values_mut(), [0; 3], |value| value);
     }
 
     /// The bytes of a map, row by row, high bytes first; `None` for one that has no plane here.

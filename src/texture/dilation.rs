@@ -26,22 +26,20 @@ pub(super) struct Empty {
     runs: Vec<Run>,
     /// Where the runs of each row begin, and where the last ends.
     rows: Vec<usize>,
+}
+
+/// The empty texels of one side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground<'a> {
+    empty: &'a Empty,
     mirrored: bool,
 }
 
-/// Fills both sides of a leaf, which cover the same texels, the back mirrored. The front has none outside
-/// of `spans`.
-pub(super) fn spread(front: &mut SideMaps, back: &mut SideMaps, spans: &Spans) {
-    let mut empty = Empty::of(front, spans);
-    front.spread(&empty);
-    empty.mirrored = true;
-    back.spread(&empty);
-}
-
 impl Empty {
-    fn of(side: &SideMaps, spans: &Spans) -> Self {
-        let size = side.size();
-        let colours = &side.base_colour;
+    /// Those of a front, which covers none outside of `spans`.
+    pub(super) fn of(front: &SideMaps, spans: &Spans) -> Self {
+        let size = front.size();
+        let colours = &front.base_colour;
         let nearest = NearestByRows::of_rows(size, size, |y| {
             let row = colours.row(y);
             runs_of(spans.row(y), |x| row[x][3] == u8::MAX)
@@ -80,13 +78,21 @@ impl Empty {
             *sum += row.len();
             Some(*sum)
         }));
-        Self { size, rows: starts.collect(), runs: rows.concat(), mirrored: false }
+        Self { size, rows: starts.collect(), runs: rows.concat() }
     }
 
+    /// Fills both sides of a leaf, which cover the same texels, the back mirrored.
+    pub(super) fn spread(&self, front: &mut SideMaps, back: &mut SideMaps) {
+        front.spread(Ground { empty: self, mirrored: false });
+        back.spread(Ground { empty: self, mirrored: true });
+    }
+}
+
+impl Ground<'_> {
     /// Fills the empty texels of a plane with what `spread` makes of their sources; with `plain` where there is
     /// none.
     pub(super) fn fill<T: Copy + Send + Sync>(
-        &self,
+        self,
         plane: &mut [T],
         plain: T,
         spread: impl Fn(T) -> T + Sync,
@@ -94,8 +100,9 @@ impl Empty {
         if plane.is_empty() {
             return;
         }
+        let Empty { size, runs, rows } = self.empty;
         // What is copied is written down first, so that the plane is free to change.
-        let mirrored = |i: usize| i - i % self.size + self.size - 1 - i % self.size;
+        let mirrored = |i: usize| i - i % size + size - 1 - i % size;
         let source = |run: &Run| {
             if run.source == NO_SITE {
                 return plain;
@@ -103,18 +110,17 @@ impl Empty {
             let i = run.source as usize;
             spread(plane[if self.mirrored { mirrored(i) } else { i }])
         };
-        let mut values = vec![plane[0]; self.runs.len()];
+        let mut values = vec![plain; runs.len()];
         for_each_piece(&mut values, RUNS, &|i, values| {
-            for (value, run) in values.iter_mut().zip(&self.runs[i * RUNS..]) {
+            for (value, run) in values.iter_mut().zip(&runs[i * RUNS..]) {
                 *value = source(run);
             }
         });
-        for_each_piece(plane, self.size, &|y, row| {
-            let of_row = self.rows[y]..self.rows[y + 1];
-            for (run, &value) in self.runs[of_row.clone()].iter().zip(&values[of_row]) {
+        for_each_piece(plane, *size, &|y, row| {
+            let of_row = rows[y]..rows[y + 1];
+            for (run, &value) in runs[of_row.clone()].iter().zip(&values[of_row]) {
                 let (start, end) = (usize::from(run.start), usize::from(run.end));
-                let texels =
-                    if self.mirrored { self.size - end..self.size - start } else { start..end };
+                let texels = if self.mirrored { size - end..size - start } else { start..end };
                 row[texels].fill(value);
             }
         });

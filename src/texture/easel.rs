@@ -1,11 +1,14 @@
 //! Painting one leaf, once or again and again.
 
 use super::canvas::Canvas;
+use super::dilation::Empty;
 use super::layout::Layout;
 use super::map::MapKind;
 use super::scene::Scene;
+use super::side::SideMaps;
+use super::spans::Spans;
 use super::{Paint, Style, TextureError, TextureSet};
-use super::{check, crumbs, dilation, finish, normals, occlusion};
+use super::{check, crumbs, finish, normals, occlusion};
 use crate::margin::Margin;
 use crate::observer::{Observer, Progress};
 use crate::seed::Seed;
@@ -22,14 +25,22 @@ pub struct Easel<'a> {
     venation: &'a Venation,
     seed: Seed,
     layout: Option<Layout>,
+    outside: Option<Outside>,
     canvas: Canvas,
+}
+
+/// Where a leaf is not, once it is known which texels its layout covers.
+#[derive(Debug)]
+struct Outside {
+    crumbs: Vec<usize>,
+    empty: Empty,
 }
 
 impl<'a> Easel<'a> {
     /// For the leaf of a seed.
     #[must_use]
     pub fn new(margin: &'a Margin, venation: &'a Venation, seed: Seed) -> Self {
-        Self { margin, venation, seed, layout: None, canvas: Canvas::default() }
+        Self { margin, venation, seed, layout: None, outside: None, canvas: Canvas::default() }
     }
 
     /// Lays down pictures that nobody looks at any more, of this leaf or of another: the next ones are painted over
@@ -54,6 +65,7 @@ impl<'a> Easel<'a> {
         };
         report(0);
         let laid = self.layout.take().filter(|layout| layout.serves(paint));
+        let outside = self.outside.take().filter(|_| laid.is_some());
         let layout: &Layout = self.layout.insert(
             laid.unwrap_or_else(|| Layout::new(paint, self.margin, self.venation, self.seed)),
         );
@@ -64,12 +76,15 @@ impl<'a> Easel<'a> {
         let scene = Scene::new(layout, paint, maps, self.margin, self.seed);
         report(1);
         let ([mut front, mut back], spans) = scene.paint(&mut self.canvas);
-        if let Some(wounds) = &layout.wounds {
-            let bare = |x: usize, y: usize| wounds.is_bare(x, y);
-            crumbs::clear(&mut front, &mut back, &layout.whole(), bare);
-        }
+        let outside = match outside {
+            Some(outside) => {
+                crumbs::clear(&mut front, &mut back, &outside.crumbs);
+                outside
+            }
+            None => Outside::of(layout, [&mut front, &mut back], &spans),
+        };
         report(2);
-        dilation::spread(&mut front, &mut back, &spans);
+        self.outside.insert(outside).empty.spread(&mut front, &mut back);
         let per_mm = layout.frame.pixels_per_mm(layout.size) as f32;
         let per_texel = scene.height_range_mm() as f32 / 65535.0 * per_mm;
         for (side, spans) in [(&mut front, &spans), (&mut back, &spans.mirrored())] {
@@ -93,5 +108,17 @@ impl<'a> Easel<'a> {
         finish(paint, maps, &mut set, layout.seed);
         report(3);
         Ok(set)
+    }
+}
+
+impl Outside {
+    /// Clears the crumbs of a leaf that has just been painted, and finds what is empty then.
+    fn of(layout: &Layout, [front, back]: [&mut SideMaps; 2], spans: &Spans) -> Self {
+        let crumbs = layout.wounds.as_ref().map_or_else(Vec::new, |wounds| {
+            let bare = |x: usize, y: usize| wounds.is_bare(x, y);
+            crumbs::find(&front.base_colour, &layout.whole(), bare)
+        });
+        crumbs::clear(front, back, &crumbs);
+        Self { crumbs, empty: Empty::of(front, spans) }
     }
 }

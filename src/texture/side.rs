@@ -1,7 +1,7 @@
 //! The maps of one side, as planes of pixels.
 
 use super::deep::Deep;
-use super::dilation::Empty;
+use super::dilation::Ground;
 use super::map::{MapKind, MapSet, Outside};
 use super::samples;
 use crate::raster::Grid;
@@ -207,15 +207,15 @@ impl SideMaps {
 
     /// Fills the texels outside the leaf, each plane after its map's [`Outside`]; where there is nothing to spread,
     /// as in [`Self::empty`].
-    pub(super) fn spread(&mut self, empty: &Empty) {
-        empty.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
-        empty.fill(self.height.values_mut(), PLAIN_HEIGHT, |value| value);
-        empty.fill(self.roughness.values_mut(), 0, |value| value);
-        empty.fill(self.transmission.values_mut(), 0, |value| value);
-        empty.fill(self.translucency.values_mut(), [0; 3], |value| value);
-        empty.fill(self.bump.values_mut(), PLAIN_BUMP, |value| value);
+    pub(super) fn spread(&mut self, ground: Ground<'_>) {
+        ground.fill(self.base_colour.values_mut(), [0; 4], |[r, g, b, _]| [r, g, b, 0]);
+        ground.fill(self.height.values_mut(), PLAIN_HEIGHT, |value| value);
+        ground.fill(self.roughness.values_mut(), 0, |value| value);
+        ground.fill(self.transmission.values_mut(), 0, |value| value);
+        ground.fill(self.translucency.values_mut(), [0; 3], |value| value);
+        ground.fill(self.bump.values_mut(), PLAIN_BUMP, |value| value);
         if let Some(deep) = &mut self.deep {
-            deep.spread(empty);
+            deep.spread(ground);
         }
         debug_assert!(MapKind::Thickness.outside() == Outside::Zero, "left as it is empty");
     }

@@ -3,6 +3,7 @@
 mod batches; // many leaves: shards, killed runs, atlases, dry runs
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod closed; // closed venation: loops that close, against the same reference
+mod easel; // a leaf painted again and again
 mod emergence; // straight, symmetric, ordered veins from growth alone
 mod files; // what is written, read back by independent readers
 mod fitting; // real leaves to parameters and silhouettes

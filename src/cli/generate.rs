@@ -1,6 +1,7 @@
 //! `venation generate`: leaves into folders.
 
 mod job;
+mod making;
 mod notes;
 
 use std::path::{Path, PathBuf};
@@ -8,18 +9,17 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::Serialize;
 use venation::document::{Comments, Document, Value};
+use venation::io;
 use venation::io::batch::{self, Shard};
-use venation::io::write::{Overwrite, write_files};
-use venation::io::{self, LeafFiles};
-use venation::pipeline;
-use venation::seed::Seed;
+use venation::io::write::Overwrite;
 
 use super::leaf_args::LeafArgs;
 use super::output_args::OutputArgs;
-use super::progress::{Bar, Counter, ProgressWord};
+use super::progress::{Counter, ProgressWord};
 use super::run_args::RunArgs;
 use super::{Context, Failure, seeds};
 use job::Job;
+use making::{Canvases, make};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -146,9 +146,10 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     notes::tell_unused(context, &todo);
     let counter = Counter::new(args.progress, context.quiet, todo.len());
     let bars = context.quiet || batch.jobs.len() != 1 || args.progress != ProgressWord::Auto;
+    let canvases = Canvases::default();
     let results: Vec<Result<Made, Failure>> = pool.install(|| {
         let results = todo.par_iter().map(|(job, overwrite)| {
-            let result = make(job, *overwrite, bars).or_else(|failure| match failure {
+            let result = make(job, *overwrite, bars, &canvases).or_else(|failure| match failure {
                 // Another process with the same orders was here first.
                 Failure::Exists(_) if args.skip_existing && job.is_done() => {
                     Ok(Made::of(job, "skipped"))
@@ -245,20 +246,6 @@ pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure>
         .num_threads(threads.unwrap_or(0))
         .build()
         .map_err(|error| Failure::Unexpected(format!("--threads: {error}")))
-}
-
-fn make(job: &Job, overwrite: Overwrite, quiet: bool) -> Result<Made, Failure> {
-    let mut bar = Bar::new(quiet, "");
-    let leaf = pipeline::generate(&job.spec, Seed(job.seed), &mut bar)?;
-    let files = io::encode_leaf(&LeafFiles::of(&leaf, &job.toml, &job.output));
-    write_files(&job.folder, &files, overwrite)?;
-    Ok(Made {
-        files: files.into_iter().map(|(name, _)| name).collect(),
-        nodes: leaf.grown.venation.graph().len(),
-        unreached_sources: leaf.grown.venation.unreached().total(),
-        note: notes::of_sources(&leaf.grown.venation),
-        ..Made::of(job, "made")
-    })
 }
 
 fn shown(path: &Path) -> String {

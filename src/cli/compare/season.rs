@@ -8,7 +8,7 @@ use venation::io::animation::apng;
 use venation::io::image::{Caption, colour_png};
 use venation::io::write::{Overwrite, write_files};
 use venation::observer::Silent;
-use venation::pipeline::{self, Grown};
+use venation::pipeline::{self, Grown, Painter};
 use venation::raster::Grid;
 use venation::raster::montage::{self, Layout, Panel};
 use venation::seed::Seed;
@@ -43,25 +43,25 @@ pub(super) struct Year {
 
 impl Year {
     pub(super) fn new(document: &Document, seed: u64) -> Result<Self, Failure> {
-        let mut spec = leaf_args::resolve(document, seed)?;
-        spec.output.maps = "basecolor,translucency".into();
+        let spec = leaf_args::resolve(document, seed)?;
         let grown = pipeline::grow(&spec, Seed(seed), &mut Silent)?;
         Ok(Self { spec, grown, seed })
     }
 
-    fn painted(&self, season: f64, maturity: f64) -> Result<TextureSet, Failure> {
-        let health = self.spec.state.health;
+    /// Paints these maps of the leaf at one time after another.
+    fn times(&self, maps: &str) -> Times<'_> {
         let mut spec = self.spec.clone();
-        spec.state = StateSpec { season, maturity, health };
-        Ok(pipeline::paint(&spec, &self.grown, Seed(self.seed), &mut Silent)?)
+        spec.output.maps = maps.into();
+        Times { painter: Painter::new(&self.grown, Seed(self.seed)), spec }
     }
 
     /// The labelled sheet: front, back and against the light, a column for every state; and the states.
     pub(super) fn sheet(&self) -> Result<(Vec<u8>, Vec<State>), Failure> {
+        let mut times = self.times("basecolor,translucency");
         let mut rows: [Vec<Panel>; 3] = Default::default();
         let mut states = Vec::new();
         for (name, season, maturity) in YEAR {
-            let set = self.painted(season, maturity)?;
+            let set = times.paint(season, maturity)?;
             let colour = mean(&set.front.base_colour);
             states.push(State { name, season, maturity, seed: self.seed, colour });
             let notes = vec![if maturity < 1.0 {
@@ -92,6 +92,7 @@ impl Year {
         (force, dry_run): (bool, bool),
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        let mut times = self.times("basecolor");
         let maturity = self.spec.state.maturity;
         let season = |i: usize| i as f64 / (frames - 1).max(1) as f64;
         let animated = out
@@ -104,7 +105,7 @@ impl Year {
                 return Ok(());
             }
             let pictures: Vec<Grid<[u8; 4]>> = (0..frames)
-                .map(|i| Ok(self.painted(season(i), maturity)?.front.base_colour))
+                .map(|i| Ok(times.paint(season(i), maturity)?.front.base_colour))
                 .collect::<Result<_, Failure>>()?;
             save(out, apng(&pictures, FILM_RATE))?;
             writeln!(context.stdout, "{}", out.display())?;
@@ -118,12 +119,27 @@ impl Year {
                 writeln!(context.stdout, "{}", path.display())?;
                 continue;
             }
-            let picture = self.painted(season(i), maturity)?.front.base_colour;
-            let file = (name(i), colour_png(&picture, &Caption::default()));
+            let set = times.paint(season(i), maturity)?;
+            let file = (name(i), colour_png(&set.front.base_colour, &Caption::default()));
+            times.painter.take_back(set);
             write_files(out, &[file], Overwrite::Force)?;
             writeln!(context.stdout, "{}", path.display())?;
         }
         Ok(())
+    }
+}
+
+/// A leaf that is painted at one time of the year after another.
+struct Times<'a> {
+    painter: Painter<'a>,
+    spec: LeafSpec,
+}
+
+impl Times<'_> {
+    fn paint(&mut self, season: f64, maturity: f64) -> Result<TextureSet, Failure> {
+        let health = self.spec.state.health;
+        self.spec.state = StateSpec { season, maturity, health };
+        Ok(self.painter.paint(&self.spec, &mut Silent)?)
     }
 }
 

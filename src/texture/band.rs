@@ -93,7 +93,7 @@ impl pulp::WithSimd for Band<'_> {
                 continue;
             }
             let line = y - rows.start;
-            let guide = scene.layout.guide.row(y, &mut scratch.guide);
+            let guide = scene.layout.guide.row(y, span, &mut scratch.guide);
             let wounds = scene.layout.wounds.as_ref().map(|wounds| wounds.row(y));
             let [left, low] = at(span.start, y + 1);
             let height = low + 0.5 / scene.layout.per_mm;

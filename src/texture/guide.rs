@@ -14,7 +14,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 pub(super) use self::lattice::Lattice;
-use self::lattice::vein_lines;
+use self::lattice::{coarse_edges, vein_lines};
 use self::smooth::{NOISE_NODES_MM, Smooth, SmoothFields};
 use super::strip::{LANES, Lane};
 use crate::geometry::polygon;
@@ -73,8 +73,10 @@ const NARROW_NODES: f32 = 4.0;
 pub(super) struct Guide {
     side: usize,
     per_texel: f32,
-    /// Distance to the nearest vein, and weight of the colour that spreads from the narrow ones.
-    fine: Vec<[f32; 2]>,
+    /// Distance to the nearest vein.
+    vein: Vec<f32>,
+    /// Weight of the colour that spreads from the narrow veins, where any does.
+    narrow: Option<Vec<f32>>,
     /// The node before each column of the texture, and how far towards the next one it lies.
     columns: Vec<(u32, f32)>,
     smooth: Smooth,
@@ -139,18 +141,21 @@ impl Guide {
         // A vein reaches half as many nodes of a lattice with half as many.
         let wide_nodes = (WIDE_NODES * reach.vein_strength).max(NARROW_NODES);
         let wide = wide_nodes * coarse.side as f32 / side as f32;
+        let spreading = coarse_edges(venation, reach.vein_spread);
+        let coarse_nodes = || vec![0.0; coarse.side * coarse.side];
         let smooth = SmoothFields {
             side: coarse.side,
             major: coarse.distances(&major, &spans),
             speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
-            from_wide: coarse.vein_weights(venation, reach, wide..f32::INFINITY),
+            from_wide: coarse
+                .vein_weights(venation, &spreading, reach, wide..f32::INFINITY)
+                .unwrap_or_else(coarse_nodes),
             edge,
             spans,
         };
         let fine_spans = smooth.spans_at(side);
-        let distances = lattice.distances(&veins, &fine_spans);
-        let from_narrow = lattice.vein_weights(venation, reach, 0.0..wide_nodes);
-        let fine = distances.into_iter().zip(from_narrow).map(|(vein, narrow)| [vein, narrow]);
+        let vein = lattice.distances(&veins, &fine_spans);
+        let narrow = lattice.vein_weights(venation, &spreading, reach, 0.0..wide_nodes);
         let even = coarse.spacing() <= NOISE_NODES_MM;
         let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);
         let columns = |side: usize| {
@@ -163,19 +168,35 @@ impl Guide {
         Self {
             side,
             per_texel: side as f32 / size as f32,
-            fine: fine.collect(),
+            vein,
+            narrow,
             columns: columns(side),
             smooth_columns: columns(smooth.side),
             smooth,
         }
     }
 
-    /// The guide along row `y` of the texture; `mixed` is overwritten.
+    /// The guide along some columns of row `y` of the texture; `mixed` is overwritten.
     #[inline(always)]
-    pub(super) fn row<'a>(&'a self, y: usize, mixed: &'a mut MixedRow) -> GuideRow<'a> {
+    pub(super) fn row<'a>(
+        &'a self,
+        y: usize,
+        columns: &Range<usize>,
+        mixed: &'a mut MixedRow,
+    ) -> GuideRow<'a> {
         let size = self.columns.len();
-        mix_rows(&self.fine, self.side, y, size, &mut mixed.fine);
-        mix_rows(&self.smooth.nodes, self.smooth.side, y, size, &mut mixed.smooth);
+        let nodes = |of: &[(u32, f32)]| {
+            let [first, last] = [columns.start, columns.end - 1].map(|x| of[x].0 as usize);
+            first..last + 2
+        };
+        let (fine, smooth) = (nodes(&self.columns), nodes(&self.smooth_columns));
+        mix_rows(&self.vein, self.side, y, size, fine.clone(), &mut mixed.vein);
+        match &self.narrow {
+            Some(narrow) => mix_rows(narrow, self.side, y, size, fine, &mut mixed.narrow),
+            None => mixed.narrow.resize(self.side, 0.0),
+        }
+        let side = self.smooth.side;
+        mix_rows(&self.smooth.nodes, side, y, size, smooth, &mut mixed.smooth);
         GuideRow { mixed, columns: &self.columns, smooth_columns: &self.smooth_columns }
     }
 
@@ -200,37 +221,63 @@ impl Guide {
             let from = row * side + column;
             mixed(&self.smooth.nodes[from], &self.smooth.nodes[from + 1], s)
         });
-        place(&self.fine[i], &mixed(&above, &below, t))
+        let narrow = self.narrow.as_ref().map_or(0.0, |narrow| narrow[i]);
+        place(self.vein[i], narrow, &mixed(&above, &below, t))
     }
 }
 
 /// A place of both lattices.
 #[inline(always)]
-fn place([vein, narrow]: &[f32; 2], smooth: &[f32; 8]) -> Place {
+fn place(vein: f32, narrow: f32, smooth: &[f32; 8]) -> Place {
     let [edge, major, speckle, a, b, c, wide, _] = *smooth;
-    let from_veins = if wide > *narrow { wide } else { *narrow };
-    Place { edge, major, vein: *vein, from_veins, speckle, noise: [a, b, c] }
+    let from_veins = if wide > narrow { wide } else { narrow };
+    Place { edge, major, vein, from_veins, speckle, noise: [a, b, c] }
 }
 
-/// The nodes of a lattice with so many a side mixed for a row of a texture of so many texels.
+/// Some columns of the nodes of a lattice with so many a side mixed for a row of a texture of so many texels.
 #[inline(always)]
-fn mix_rows<const N: usize>(
-    nodes: &[[f32; N]],
+fn mix_rows<T: Mix>(
+    nodes: &[T],
     side: usize,
     y: usize,
     size: usize,
-    row: &mut Vec<[f32; N]>,
+    columns: Range<usize>,
+    row: &mut Vec<T>,
 ) {
     let (i, t) = between(y, side as f32 / size as f32, side);
-    let (lower, upper) = (&nodes[i * side..(i + 1) * side], &nodes[(i + 1) * side..(i + 2) * side]);
-    row.clear();
-    row.extend(lower.iter().zip(upper).map(|(a, b)| mixed(a, b, t)));
+    let of_row = |i: usize| &nodes[i * side + columns.start..i * side + columns.end];
+    let (lower, upper) = (of_row(i), of_row(i + 1));
+    row.resize(side, T::default());
+    for (row, (a, b)) in row[columns].iter_mut().zip(lower.iter().zip(upper)) {
+        *row = a.mixed(b, t);
+    }
+}
+
+/// What lies on a node.
+trait Mix: Copy + Default {
+    /// What lies between two nodes.
+    fn mixed(&self, other: &Self, share: f32) -> Self;
+}
+
+impl Mix for f32 {
+    #[inline(always)]
+    fn mixed(&self, other: &Self, share: f32) -> Self {
+        self + (other - self) * share
+    }
+}
+
+impl Mix for [f32; 8] {
+    #[inline(always)]
+    fn mixed(&self, other: &Self, share: f32) -> Self {
+        mixed(self, other, share)
+    }
 }
 
 /// Nodes of both lattices at the height of a row of the texture.
 #[derive(Debug, Default)]
 pub(super) struct MixedRow {
-    fine: Vec<[f32; 2]>,
+    vein: Vec<f32>,
+    narrow: Vec<f32>,
     smooth: Vec<[f32; 8]>,
 }
 
@@ -248,14 +295,17 @@ impl GuideRow<'_> {
     #[inline(always)]
     pub(super) fn read(&self, columns: Range<usize>, lanes: &mut [Lane; 8]) {
         // All of a node together, and then number by number.
-        let (mut fine, mut smooth) = ([[0.0; 2]; LANES], [[0.0; 8]; LANES]);
+        let (mut vein, mut narrow) = ([0.0; LANES], [0.0; LANES]);
+        let mut smooth = [[0.0; 8]; LANES];
         for i in 0..LANES {
             let x = (columns.start + i).min(columns.end - 1);
-            mix(&self.mixed.fine, self.columns[x], &mut fine[i]);
+            let (node, t) = self.columns[x];
+            let between = |row: &[f32]| row[node as usize].mixed(&row[node as usize + 1], t);
+            (vein[i], narrow[i]) = (between(&self.mixed.vein), between(&self.mixed.narrow));
             mix(&self.mixed.smooth, self.smooth_columns[x], &mut smooth[i]);
         }
         for i in 0..LANES {
-            let place = place(&fine[i], &smooth[i]).array();
+            let place = place(vein[i], narrow[i], &smooth[i]).array();
             for k in 0..8 {
                 lanes[k][i] = place[k];
             }
@@ -313,7 +363,7 @@ mod tests {
         let edges = SegmentIndex::of_polygon(margin.outline());
         let mut nodes = MixedRow::default();
         for y in 0..size {
-            let row = guide.row(y, &mut nodes);
+            let row = guide.row(y, &(0..size), &mut nodes);
             let mut lanes = [[0.0; LANES]; 8];
             for x in 0..size {
                 // Strip by strip, the last of them shorter.

@@ -139,18 +139,16 @@ impl Lattice<'_> {
         distances
     }
 
-    /// The largest w = h (1 − distance / (spread × width)) over the veins whose colour reaches so far
-    /// (nodes). The height h is 1; where fine veins are faint, it falls with the width.
+    /// The largest w = h (1 − distance / (spread × width)) over those of some vein edges whose colour reaches so
+    /// far (nodes); `None` where none does. The height h is 1; where fine veins are faint, it falls with the width.
     pub(super) fn vein_weights(
         &self,
         venation: &Venation,
+        edges: &[(u32, u32)],
         reach: &Reach<'_>,
         far: Range<f32>,
-    ) -> Vec<f32> {
+    ) -> Option<Vec<f32>> {
         let &Reach { vein_spread: spread, faint_veins, .. } = reach;
-        if spread <= 0.0 || far.is_empty() {
-            return vec![0.0; self.side * self.side];
-        }
         let per_mm = self.frame.pixels_per_mm(self.side);
         let position = |node: u32| {
             let p = venation.graph().positions()[node as usize];
@@ -167,9 +165,9 @@ impl Lattice<'_> {
             let width = venation.radii()[b as usize] / FULL_MM;
             (capsule, if faint_veins { (width * width).min(1.0) as f32 } else { 1.0 })
         };
-        let cones = coarse_edges(venation, spread).into_iter().map(cone);
+        let cones = edges.iter().copied().map(cone);
         let cones: Vec<_> = cones.filter(|(cone, _)| far.contains(&cone.widest())).collect();
-        self.weights(&cones)
+        (!cones.is_empty()).then(|| self.weights(&cones))
     }
 
     /// The largest w = 1 − distance / reach over all speckles.
@@ -322,8 +320,12 @@ impl Stretch {
 const SHORT: f64 = 0.3;
 
 /// The vein edges with short ones in a row replaced by one, as long as it is short against the
-/// reach of the colour: a midrib of 300 nodes would otherwise paint 300 overlapping discs.
-fn coarse_edges(venation: &Venation, spread: f64) -> Vec<(u32, u32)> {
+/// reach of the colour: a midrib of 300 nodes would otherwise paint 300 overlapping discs. None where no colour
+/// spreads.
+pub(super) fn coarse_edges(venation: &Venation, spread: f64) -> Vec<(u32, u32)> {
+    if spread <= 0.0 {
+        return Vec::new();
+    }
     let graph = venation.graph();
     let children = graph.child_counts();
     // The last node on the way to each node from which no edge has been drawn yet.

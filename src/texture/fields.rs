@@ -68,9 +68,12 @@ pub(super) struct VeinRows {
     stride: usize,
     /// The column of the first texel in each row.
     first: usize,
+    /// Size of a texel (mm).
+    pub mm: f32,
     pub cover: Vec<f32>,
     pub radius: Vec<f32>,
-    pub dome: Vec<f32>,
+    /// The dome's height, squared (px²).
+    pub dome2: Vec<f32>,
     pub groove: Vec<f32>,
     /// Order of the vein, 0 for none; of several the lowest. Empty where nobody asks.
     pub order: Vec<u8>,
@@ -84,7 +87,7 @@ impl VeinRows {
         (self.stride, self.first) = (columns.len() + BLOCK, columns.start);
         let texels = self.stride * rows;
         let planes =
-            [&mut self.cover, &mut self.radius, &mut self.dome, &mut self.groove, &mut self.shows];
+            [&mut self.cover, &mut self.radius, &mut self.dome2, &mut self.groove, &mut self.shows];
         for plane in planes {
             plane.clear();
             plane.resize(texels, 0.0);
@@ -152,6 +155,7 @@ impl Strokes {
         out: &mut VeinRows,
     ) {
         out.clear(seen, rows.len(), orders);
+        out.mm = self.mm;
         for stroke in self.strokes.band(band) {
             let [columns, lines] = stroke.capsule.pixels(stroke.reach, seen.end, rows.clone());
             let start = columns.start.max(seen.start);
@@ -228,12 +232,11 @@ impl VeinRows {
             groove[i] = groove[i].max(own);
         }
         self.groove[texels.clone()].copy_from_slice(&groove);
-        let mut dome = block(&self.dome[texels.clone()]);
+        let mut dome2 = block(&self.dome2[texels.clone()]);
         for i in 0..BLOCK {
-            let own = (here[i] * here[i] - distance2[i]).max(0.0).sqrt() * mm;
-            dome[i] = dome[i].max(own);
+            dome2[i] = dome2[i].max(here[i] * here[i] - distance2[i]);
         }
-        self.dome[texels.clone()].copy_from_slice(&dome);
+        self.dome2[texels.clone()].copy_from_slice(&dome2);
         let mut shows = block(&self.shows[texels.clone()]);
         let mut cover = block(&self.cover[texels.clone()]);
         let mut radius = block(&self.radius[texels.clone()]);

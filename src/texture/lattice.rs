@@ -29,10 +29,15 @@ const BLOCK: usize = 8;
 /// Red, green, blue sent back and let through; two lanes are spare.
 type Node = [f32; 8];
 
+/// As many nodes as a number of 16 bits can name: found by one, a node is not looked for past the end of a list.
+const NAMED: usize = 1 << 16;
+const _: () = assert!(STRIDES[0] * NODES[0] <= NAMED);
+
 /// Colours over amounts.
 #[derive(Debug)]
 pub(super) struct Lattice {
-    nodes: Vec<Node>,
+    /// Those past the last on the lattice are black.
+    nodes: Box<[Node; NAMED]>,
     scale: [f32; 4],
 }
 
@@ -102,7 +107,10 @@ impl Lattice {
             }
             node
         };
-        Self { nodes: (0..count).map(node).collect(), scale: scale.map(|v| v as f32) }
+        let mut nodes: Vec<Node> = (0..count).map(node).collect();
+        nodes.resize(NAMED, [0.0; 8]);
+        let nodes = nodes.try_into().expect("as many as are named");
+        Self { nodes, scale: scale.map(|v| v as f32) }
     }
 
     /// Red, green, blue sent back, then let through, as sRGB numbers, of leaves with so much
@@ -143,12 +151,13 @@ impl Lattice {
         for block in (0..LANES).step_by(BLOCK) {
             let mut seen = [[0.0; 8]; BLOCK];
             for (i, seen) in seen.iter_mut().enumerate() {
-                let mut sum = [0.0; 8];
-                for k in 0..6 {
-                    let at = block + i;
-                    let (node, weight) = (&self.nodes[corners[k][at] as usize], weights[k][at]);
+                let at = block + i;
+                let node = |k: usize| &self.nodes[usize::from(corners[k][at] as u16)];
+                let mut sum = node(0).map(|channel| channel * weights[0][at]);
+                for (k, weights) in weights.iter().enumerate().skip(1) {
+                    let node = node(k);
                     for c in 0..8 {
-                        sum[c] += node[c] * weight;
+                        sum[c] += node[c] * weights[at];
                     }
                 }
                 *seen = sum;
@@ -185,7 +194,8 @@ impl Lattice {
                 }
             })
         };
-        let best = self.nodes.iter().enumerate().map(|(i, seen)| (off(node(i), seen), i));
+        let count = NODES.iter().product();
+        let best = self.nodes[..count].iter().enumerate().map(|(i, seen)| (off(node(i), seen), i));
         let (mut least, i) = best.fold((f32::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
         let mut leaf = node(i);
         // From the nearest node downhill, a step to either side on every axis; steps shrink.
@@ -267,7 +277,7 @@ mod tests {
 
     #[test]
     fn no_node_sends_back_and_lets_through_more_than_falls_on_it() {
-        for node in &of(Albedo::Total).nodes {
+        for node in of(Albedo::Total).nodes.iter() {
             for c in 0..3 {
                 let sum = decoded(f64::from(node[c])) + decoded(f64::from(node[c + 3]));
                 assert!(sum <= 1.0 + 1e-6, "{node:?}");

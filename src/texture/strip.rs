@@ -144,10 +144,13 @@ impl Strip {
         for (lane, plane) in [
             (&mut vein.cover, &rows.cover),
             (&mut vein.radius, &rows.radius),
-            (&mut vein.dome, &rows.dome),
+            (&mut vein.dome, &rows.dome2),
             (&mut vein.groove, &rows.groove),
         ] {
             lane[..len].copy_from_slice(&plane[from..from + len]);
+        }
+        for dome in &mut vein.dome {
+            *dome = dome.sqrt() * rows.mm;
         }
         if !rows.order.is_empty() {
             vein.order[..len].copy_from_slice(&rows.order[from..from + len]);

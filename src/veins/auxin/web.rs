@@ -5,6 +5,8 @@
 //! edge (a root of one from itself to itself), so that nodes need no grid of their own. With one, laying
 //! veins took a fifth longer, for each grid's cells come from far memory.
 
+use std::collections::HashMap;
+
 use glam::DVec2;
 use smallvec::{SmallVec, smallvec};
 
@@ -174,7 +176,8 @@ impl Web {
         self.beside(a).any(|node| node == b)
     }
 
-    /// Whether one comes from `a` to `b` along edges over no more than `limit`.
+    /// Whether one comes from `a` to `b` along edges over no more than `limit`. No edge's `length` is more than that of
+    /// a way round over other nodes. Looks at the nodes from which `b` could still be reached.
     pub(super) fn is_way_within(
         &self,
         a: NodeId,
@@ -182,26 +185,58 @@ impl Web {
         limit: f64,
         length: impl Fn(NodeId, NodeId) -> f64,
     ) -> bool {
-        // A few edges at most: a list is as good as a queue. A node is looked at again when a
-        // shorter way to it turns up.
-        let mut known: SmallVec<[_; 32]> = smallvec![(a, 0.0)];
+        // Mostly a few edges: a list is as good as a queue. A node is looked at again when a shorter way to it
+        // turns up.
+        let mut known = Ways { list: smallvec![(a, 0.0)], shortest: HashMap::new() };
         let mut next = 0;
-        while next < known.len() {
-            let (node, way) = known[next];
+        while next < known.list.len() {
+            let (node, way) = known.list[next];
             next += 1;
             if node == b {
                 return true;
             }
             for other in self.beside(node) {
                 let way = way + length(node, other);
-                let is_shorter =
-                    known.iter().all(|&(node, known_way)| node != other || way < known_way);
-                if way <= limit && is_shorter {
-                    known.push((other, way));
+                // Rounding keeps no node out that a sum of edges would let in.
+                let is_worth = way <= limit && way + length(other, b) <= limit * (1.0 + 1e-9);
+                if is_worth {
+                    known.add(other, way);
                 }
             }
         }
         false
+    }
+}
+
+/// Ways from one node to others.
+struct Ways {
+    /// In the order in which they were found.
+    list: SmallVec<[(NodeId, f64); FEW]>,
+    /// The shortest to each node, once there are many.
+    shortest: HashMap<NodeId, f64>,
+}
+
+/// So many are sooner looked through than looked up.
+const FEW: usize = 32;
+
+impl Ways {
+    /// Adds a way if it is shorter than those known to its node.
+    fn add(&mut self, node: NodeId, way: f64) {
+        if self.list.len() <= FEW {
+            if self.list.iter().any(|&(other, known)| other == node && known <= way) {
+                return;
+            }
+        } else {
+            if self.shortest.is_empty() {
+                // Later ones in the list are shorter.
+                self.shortest.extend(self.list.iter().copied());
+            }
+            if self.shortest.get(&node).is_some_and(|&known| known <= way) {
+                return;
+            }
+            self.shortest.insert(node, way);
+        }
+        self.list.push((node, way));
     }
 }
 
@@ -269,6 +304,37 @@ mod tests {
             stopped += usize::from(first.is_some());
         }
         assert!(taken > 100 && stopped > 100, "{taken} taken, {stopped} stopped");
+    }
+
+    #[test]
+    fn ways_are_found_as_by_looking_at_all_of_them() {
+        let mut rng = Seed(5).stream(Stage::Tissue);
+        let (web, positions, edges) = web(&mut rng);
+        let length = |a: NodeId, b: NodeId| positions[a as usize].distance(positions[b as usize]);
+        let (mut near, mut far) = (0, 0);
+        for _ in 0..60 {
+            let from = (rng.unit() * positions.len() as f64) as NodeId;
+            let mut ways = vec![f64::INFINITY; positions.len()];
+            ways[from as usize] = 0.0;
+            for _ in 0..positions.len() {
+                for &(a, b) in &edges {
+                    let (to_a, to_b) = (ways[a as usize], ways[b as usize]);
+                    ways[b as usize] = to_b.min(to_a + length(a, b));
+                    ways[a as usize] = to_a.min(to_b + length(a, b));
+                }
+            }
+            for (to, &way) in (0..).zip(&ways) {
+                let limit = rng.between(0.0, 0.8);
+                if (way - limit).abs() < 1e-9 {
+                    continue;
+                }
+                let is_near = web.is_way_within(from, to, limit, length);
+                assert_eq!(is_near, way < limit, "{from} to {to}: {way}, {limit}");
+                near += usize::from(is_near);
+                far += usize::from(!is_near && way < 1.0);
+            }
+        }
+        assert!(near > 1000 && far > 1000, "{near} near, {far} far");
     }
 
     #[test]

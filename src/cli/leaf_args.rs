@@ -89,24 +89,26 @@ pub(crate) struct LeafArgs {
     /// `reniform`, … (`venation compare --by shape` shows them all).
     #[arg(long, value_name = "NAME", conflicts_with = "outline")]
     shape: Option<String>,
-    /// Length of the blade from base to apex, in mm [default: the preset's].
-    #[arg(long, value_name = "L")]
-    length_mm: Option<f64>,
+    /// Length of the blade from base to apex, in mm; a range, as 60..90, draws one for each leaf
+    /// [default: the preset's].
+    #[arg(long, value_name = "L", allow_negative_numbers = true)]
+    length_mm: Option<String>,
     /// How the blade grows.
     #[arg(long, value_name = "TYPE", value_enum)]
     growth: Option<GrowthWord>,
     /// Side of the square textures, in pixels: 16 to 16384 [default: the preset's, 1024].
     #[arg(long, value_name = "PX")]
     pub(crate) size: Option<u64>,
-    /// 0 summer, 0.5 autumn colour, 1 litter [default: the preset's, 0].
-    #[arg(long, value_name = "0..1")]
-    season: Option<f64>,
-    /// 0 just unfolded, 1 mature [default: the preset's, 1].
-    #[arg(long, value_name = "0..1")]
-    maturity: Option<f64>,
-    /// 1 well, less sick [default: the preset's, 1].
-    #[arg(long, value_name = "0..1")]
-    health: Option<f64>,
+    /// 0 summer, 0.5 autumn colour, 1 litter; a range, as 0.3..0.7, draws one for each leaf
+    /// [default: the preset's, 0].
+    #[arg(long, value_name = "0 to 1", allow_negative_numbers = true)]
+    season: Option<String>,
+    /// 0 just unfolded, 1 mature, or a range [default: the preset's, 1].
+    #[arg(long, value_name = "0 to 1", allow_negative_numbers = true)]
+    maturity: Option<String>,
+    /// 1 well, less sick, or a range [default: the preset's, 1].
+    #[arg(long, value_name = "0 to 1", allow_negative_numbers = true)]
+    health: Option<String>,
     /// What has happened to it, as holes=0.2,margin_bites=0.1,skeletonise=0.1 (shares of the blade),
     /// mines, spots, scorch, tears (0 to 1).
     #[arg(long, value_name = "LIST")]
@@ -196,7 +198,7 @@ impl LeafArgs {
     /// The document that the flags describe: preset or file, outline, then the flags over it.
     pub(crate) fn document(&self, context: &Context<'_>) -> Result<Document, Failure> {
         let mut document = read_document(&self.leaf)?;
-        if let Some(length) = self.length_mm {
+        if let Some(length) = &self.length_mm {
             document.set(&format!("margin.length_mm={length}"), "--length-mm")?;
         }
         if let Some(vary) = &self.vary {
@@ -208,7 +210,8 @@ impl LeafArgs {
         if let Some(size) = self.size {
             document.set(&format!("texture.size_px={size}"), "--size")?;
         }
-        let state = [("season", self.season), ("maturity", self.maturity), ("health", self.health)];
+        let state =
+            [("season", &self.season), ("maturity", &self.maturity), ("health", &self.health)];
         for (name, value) in state {
             if let Some(value) = value {
                 document.set(&format!("state.{name}={value}"), &format!("--{name}"))?;

@@ -509,11 +509,36 @@ fn the_year_is_a_sheet_with_a_table_or_a_film() {
 }
 
 #[test]
+fn every_leaf_of_a_batch_draws_its_own_state_from_a_range() {
+    let folder = fresh();
+    let flags = ["--season", "0.2..0.8", "--length-mm=30..60", "--size", "32", "-o", "many"];
+    let mut command = vec!["generate", "beech", "--seeds", "1-4"];
+    command.extend(flags);
+    command.extend(["--set", "veins.spawn_rate=5", "--maps", "basecolor"]);
+    succeed(folder.path(), &command);
+    let number = |seed: usize, key: &str| -> f64 {
+        let path = format!("many/fagus-sylvatica_s{seed:04}/leaf.toml");
+        let text = std::fs::read_to_string(folder.path().join(path)).expect("its settings");
+        let line = text.lines().find(|line| line.starts_with(key)).expect("the key");
+        line.split('=').nth(1).expect("a value").trim().parse().expect("a number")
+    };
+    for (key, range) in [("season ", 0.2..=0.8), ("length_mm ", 30.0..=60.0)] {
+        let mut drawn: Vec<f64> = (1..=4).map(|seed| number(seed, key)).collect();
+        assert!(drawn.iter().all(|value| range.contains(value)), "{key}{drawn:?}");
+        drawn.sort_by(f64::total_cmp);
+        drawn.dedup();
+        assert_eq!(drawn.len(), 4, "{key}{drawn:?}");
+    }
+}
+
+#[test]
 fn states_and_wounds_out_of_range_are_refused_by_name() {
     let folder = fresh();
     for (flags, part) in [
         (["--season", "1.5"], "state.season"),
         (["--health", "-1"], "state.health"),
+        (["--season", "autumn"], "state.season"),
+        (["--maturity", "0.2..1.2"], "state.maturity"),
         (["--damage", "holes=2"], "damage.holes"),
         (["--damage", "hole=0.1"], "damage.holes"),
         (["--damage", "holes"], "holes"),

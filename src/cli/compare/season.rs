@@ -57,7 +57,7 @@ impl Year {
 
     /// The labelled sheet: front, back and against the light, a column for every state; and the states.
     pub(super) fn sheet(&self) -> Result<(Vec<u8>, Vec<State>), Failure> {
-        let mut times = self.times("basecolor,translucency");
+        let mut times = self.times("basecolor,preview");
         let mut rows: [Vec<Panel>; 3] = Default::default();
         let mut states = Vec::new();
         for (name, season, maturity) in YEAR {
@@ -180,14 +180,14 @@ pub(super) fn table(states: &[State]) -> String {
     text
 }
 
-/// What shines through the leaf.
+/// The leaf as one sees it against the light: the last picture of its preview.
 fn against_the_light(set: &TextureSet) -> Grid<[u8; 4]> {
-    let mut picture = set.front.base_colour.clone();
-    let through = set.front.translucency.values();
-    for (texel, &[r, g, b]) in picture.values_mut().iter_mut().zip(through) {
-        *texel = [r, g, b, texel[3]];
-    }
-    picture
+    let preview = &set.front.preview;
+    let side = preview.height();
+    Grid::computed(side, side, |x, y| {
+        let [r, g, b] = preview[(preview.width() - side + x, y)];
+        [r, g, b, u8::MAX]
+    })
 }
 
 /// The mean colour of what is fully covered, in sRGB numbers.

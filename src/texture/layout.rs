@@ -124,6 +124,9 @@ impl Layout {
             midrib.get(1).is_some_and(|&node| venation.radii()[node as usize] > LEADS * root);
         let midrib: Vec<DVec2> =
             midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
+        // Of a fan the widest vein is no midrib: the petiole ends at the base, and widens none of them.
+        let goes_on = goes_on && (leads || goes_straight_on(&midrib, neck));
+        let midrib = if goes_on { midrib } else { Vec::new() };
         let stalk = Stalk::new(paint.petiole, neck, &midrib, leads);
         let bounds = margin.bounds().joined(stalk.bounds());
         let frame = TextureFrame::around(bounds.min, bounds.max, paint.texture.gutter);
@@ -218,6 +221,16 @@ impl Layout {
         }
         cover
     }
+}
+
+/// A vein that the petiole goes on in leaves the base within so many degrees of the leaf's axis, over so many of
+/// the petiole's radii.
+const STRAIGHT_ON_DEG: f64 = 12.0;
+const STRAIGHT_ON_RADII: f64 = 13.0;
+
+fn goes_straight_on(midrib: &[DVec2], neck: f64) -> bool {
+    let ahead = midrib.iter().find(|p| p.length() >= STRAIGHT_ON_RADII * neck);
+    ahead.is_none_or(|ahead| DVec2::Y.angle_to(*ahead).to_degrees().abs() < STRAIGHT_ON_DEG)
 }
 
 /// Where the speckles lie: darts on the blade, the same for both sides.

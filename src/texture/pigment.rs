@@ -237,9 +237,13 @@ impl Pigments {
         hurt: bool,
     ) -> Self {
         match spec.model {
-            ColourModel::Pigments => {
-                Self::Amounts(Box::new(mixer::Mixer::new(spec, state, petiole, petiole_reach)))
-            }
+            ColourModel::Pigments => Self::Amounts(Box::new(mixer::Mixer::new(
+                spec,
+                state,
+                petiole,
+                petiole_reach,
+                hurt,
+            ))),
             ColourModel::Hsv => {
                 Self::Chosen(Box::new(hsv::Leaf::new(spec, state, petiole, petiole_reach, hurt)))
             }

@@ -96,6 +96,9 @@ parameters! {
         least_radius_mm: number(0.0, 0.0..=10.0, "mm"),
         /// How evenly a vein tapers between its branches: 0 in a step at each, 1 all the way.
         taper: number(0.0, 0.0..=1.0, ""),
+        /// Share of its radius at its beginning that a tertiary, or finer, vein which ends on another keeps at
+        /// least: at 0 only what its own branches ask for, at 1 all of it. Rungs between secondaries keep most.
+        joined_width: number(0.0, 0.0..=1.0, ""),
         /// Where widths come from: `murray` counts tips, `flow` lets veins adapt to what flows through
         /// them, loops included, and takes seconds for each 10 000 junctions.
         widths: choice(Widths, Widths::Murray),

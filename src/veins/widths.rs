@@ -3,7 +3,8 @@
 //! Sources: Murray, "The physiological principle of minimum work", PNAS 12, 1926: where veins of radii
 //! r₁ … rₙ meet, the parent has rᵉ = r₁ᵉ + … + rₙᵉ, with e = 3 for laminar flow. Foster prints the law
 //! without the sum. Departs from it where asked: e may change with the order of the parent, the finest
-//! veins have a floor, and a vein may taper evenly between its branches, not in a step at each.
+//! veins have a floor, a vein may taper evenly between its branches, not in a step at each, and one that ends on
+//! another keeps some of its width.
 
 use glam::DVec2;
 
@@ -33,6 +34,9 @@ pub fn radii_and_orders(
     }
     if spec.taper > 0.0 {
         taper(graph, &orders, &mut radii, spec.taper);
+    }
+    if spec.joined_width > 0.0 && spec.widths == Widths::Murray {
+        widen_joined(graph, &orders, &mut radii, spec.joined_width);
     }
     radii.iter_mut().for_each(|radius| *radius = radius.max(spec.least_radius_mm));
     Ok((radii, orders))
@@ -132,6 +136,29 @@ fn taper(graph: &VeinGraph, orders: &[u8], radii: &mut [f64], share: f64) {
     }
 }
 
+/// Midribs and secondaries thin towards their ends wherever these lie; from this order on a vein may be a rung.
+const RUNG: u8 = 3;
+
+/// Keeps every finer vein that ends on another by at least `share` of its radius at its beginning: water may come from
+/// either end, and a rung between two veins is no thorn on one. Radii only grow, and none beyond that at the beginning.
+fn widen_joined(graph: &VeinGraph, orders: &[u8], radii: &mut [f64], share: f64) {
+    let heirs = orders::heirs(graph, orders);
+    let counts = graph.child_counts();
+    let ends = graph.joins().iter().flat_map(|&(a, b)| [a, b]);
+    let is_rung = |node: NodeId| counts[node as usize] == 0 && orders[node as usize] >= RUNG;
+    for end in ends.filter(|&node| is_rung(node)) {
+        let before = |&node: &NodeId| {
+            graph.parent(node).filter(|&parent| heirs[parent as usize] == Some(node))
+        };
+        let vein: Vec<NodeId> = std::iter::successors(Some(end), before).collect();
+        let least = vein.last().map_or(0.0, |&first| share * radii[first as usize]);
+        for node in vein {
+            let radius = &mut radii[node as usize];
+            *radius = radius.max(least);
+        }
+    }
+}
+
 /// Radius of a vein that carries the flow of so many tips (mm).
 #[must_use]
 pub fn radius(tip_radius_mm: f64, tips: f64, exponent: f64) -> f64 {
@@ -175,6 +202,27 @@ mod tests {
         let tips = [(0.0, 3.0), (1.0, 3.0)].map(|p| graph.sprout(limb, DVec2::from(p)));
         let side = graph.sprout(fork, DVec2::new(-1.0, 2.0));
         (graph, [root, fork, limb, tips[0], tips[1], side])
+    }
+
+    #[test]
+    fn a_vein_that_ends_on_another_keeps_a_share_of_its_width() {
+        let (mut graph, [root, fork, limb, left, right, side]) = limb();
+        // The left tip is the limb's heir, and ends on the side vein.
+        graph.join(side, left);
+        let murray = murray(&graph, 0.5, 3.0);
+        let mut secondary = murray.clone();
+        widen_joined(&graph, &[1, 1, 2, 2, 3, 2], &mut secondary, 1.0);
+        assert_eq!(secondary, murray);
+        let orders = [1, 1, 3, 3, 4, 3];
+        for share in [0.5, 0.9, 1.0] {
+            let mut radii = murray.clone();
+            widen_joined(&graph, &orders, &mut radii, share);
+            let expected = (share * murray[limb as usize]).max(0.5);
+            assert_eq!(radii[left as usize], expected);
+            for node in [root, fork, limb, right, side] {
+                assert_eq!(radii[node as usize], murray[node as usize], "{node}");
+            }
+        }
     }
 
     #[test]

@@ -18,7 +18,8 @@ const VEIN_MM: f32 = 0.45;
 const TRAPPED: f32 = 2.4;
 
 impl Blade<'_> {
-    /// Kills tissue from the margin and the tip inwards, first between the veins.
+    /// Kills tissue from the margin inwards, where water comes last: far from the base and from the larger veins,
+    /// in tongues between these. Some stretches of the margin are spared.
     pub(super) fn scorch(&mut self, strength: f64) {
         if strength == 0.0 {
             return;
@@ -32,11 +33,11 @@ impl Blade<'_> {
             }
             let p = self.at(node).as_vec2();
             let [broad, middle, fine] = place.noise;
-            let tip = smooth(0.5, 1.0, p.y / length);
-            let reach =
-                self.breadth * strength * (0.16 + 0.14 * tip) * (1.0 + 0.9 * broad + 0.5 * middle);
-            let veins = 0.6 * reach * 0.6 / (0.6 + place.major);
-            let depth = reach - veins - place.edge + 0.4 * fine;
+            let far = smooth(0.1, 0.85, p.length() / length);
+            let hit = smooth(-0.5, 0.4, broad + 0.5 * middle + 0.5 * (strength - 0.5));
+            let between = smooth(0.0, 0.07 * self.breadth, place.major);
+            let reach = 0.6 * self.breadth * strength * far * hit * (0.3 + 0.7 * between);
+            let depth = reach * (1.0 + 0.4 * middle) - place.edge + 0.4 * fine;
             // A yellow front runs before the brown.
             let wound = &mut self.nodes[node];
             wound[BROWN] = wound[BROWN].max(smooth(-0.3, 0.9, depth));

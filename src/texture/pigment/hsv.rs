@@ -55,7 +55,7 @@ impl Leaf {
         let ratio = |colour: &Hsv| green(&leaf_of(colour)) / green(&pigments.leaf);
         let (vein, back) = (ratio(&spec.front.vein), ratio(&spec.back.base));
         (pigments.vein_chlorophyll, pigments.back_chlorophyll) = (vein.min(2.0), back.min(2.0));
-        let mixer = |state: &StateSpec| Mixer::new(&alike, state, petiole, petiole_reach);
+        let mixer = |state: &StateSpec| Mixer::new(&alike, state, petiole, petiole_reach, hurt);
         let summer = StateSpec::default();
         Self {
             sides: [(&spec.front, FRONT), (&spec.back, BACK)]

@@ -67,6 +67,10 @@ pub(in crate::texture) struct Mixer {
     summer: bool,
     /// How unevenly it browns; 0 where nothing has browned yet.
     blotches: f32,
+    /// Whether anything dies before its season.
+    withers: bool,
+    /// How much of the lower side a felt hides, 0–1.
+    felt: f32,
     /// Whether neither sickness nor wounds count.
     sound: bool,
     petiole: Tint,
@@ -83,6 +87,7 @@ impl Mixer {
         state: &StateSpec,
         petiole: &Hsv,
         petiole_reach: f32,
+        hurt: bool,
     ) -> Self {
         let pigments = &spec.pigments;
         let mix = |amounts: &Amounts| amounts.array().map(|v| v as f32);
@@ -112,6 +117,7 @@ impl Mixer {
             back_structure: pigments.back_structure as f32,
             back_bloom: pigments.back_bloom as f32,
             back_brown: pigments.back_brown as f32,
+            felt: smooth(0.0, 0.8, pigments.back_brown as f32),
             back_red: pigments.back_anthocyanin_ug_cm2 as f32,
             front_bloom: pigments.front_bloom as f32,
             young: [1.0 - 0.33 * youth, 1.0 - 0.5 * youth],
@@ -119,6 +125,7 @@ impl Mixer {
             seasons: vec![Turned::at(0.0, &pigments.autumn)],
             summer: state.season == 0.0,
             blotches: if state.season > 0.0 { pigments.autumn.blotches as f32 } else { 0.0 },
+            withers: hurt || state.health < 1.0,
             sound: false,
             petiole: petiole.towards(ripe, turned).towards(dead, dry),
             petiole_reach,
@@ -193,9 +200,11 @@ impl Mixer {
             let square = tissue.vein.radius * tissue.vein.radius;
             let cord = square / (square + HALF_KEPT_MM * HALF_KEPT_MM);
             passing[i] = 1.0 - VEIN_KEEPS * cord * tissue.vein.cover;
-            let [upper, lower] = [FRONT, BACK].map(|face| {
+            let [upper, lower] = [(FRONT, 0.0), (BACK, self.felt)].map(|(face, felt)| {
                 let [net, seen] = tissue.veins_seen(&face, self.mottle);
-                seen.max(0.8 * net).min(1.0)
+                // A felt hides the net, and of the veins all but what stands out of it.
+                let bare = 1.0 - felt * (1.0 - square / (square + HALF_KEPT_MM * HALF_KEPT_MM));
+                (seen * bare).max(0.8 * net * (1.0 - felt)).min(1.0)
             });
             let upper = mixed(lamina, vein, upper);
             // A bloom sends back some of the light; veins have less of it, and what is dead none.
@@ -271,7 +280,7 @@ impl Mixer {
         // No two areoles hold the same; green tissue thickens beside a vein, and thins at the rim.
         let [broad, middle, fine] = tissue.place.noise;
         green *= 1.0 - (1.7 * m * tissue.unevenness()).clamp(-0.8, 0.7);
-        green *= 1.0 + 0.7 * tissue.flank();
+        green *= 1.0 + 0.2 * tissue.flank();
         let rim = 1.0 - smooth(0.05, 0.45, tissue.place.edge);
         green *= 1.0 - 0.35 * rim;
         mix[0] *= green;
@@ -303,6 +312,9 @@ impl Mixer {
         mix = mixed(mix, DEAD, condition.death);
         mix = mixed(mix, MINED, tissue.injury.pale);
         mix = mixed(mix, DEAD, tissue.injury.brown);
+        if self.withers {
+            withered(&mut mix, tissue);
+        }
         mix[3] += TANNIN * tissue.injury.dark;
         mix
     }
@@ -364,6 +376,18 @@ impl Mixer {
             (0.86 + 0.18 * round) * (1.0 - 0.22 * stem) * (1.0 + 0.2 * self.mottle * grain);
         [shade(tint, 0.3); 2]
     }
+}
+
+/// What has died before its season dries from place to place: darker here, paler and yellower there.
+#[inline(always)]
+fn withered(mix: &mut Mix, tissue: &Tissue) {
+    let [broad, middle, fine] = tissue.place.noise;
+    let patch = 1.1 * broad + 0.9 * middle + 0.5 * fine + 0.2 * tissue.tones[AREOLE];
+    let dead = tissue.condition.death.max(tissue.injury.brown);
+    let far = dead * patch.clamp(-1.0, 1.0);
+    mix[1] *= 1.0 - 0.4 * far;
+    mix[3] *= 1.0 + 0.45 * far;
+    mix[4] -= 0.3 * far;
 }
 
 #[inline(always)]

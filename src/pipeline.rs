@@ -109,7 +109,24 @@ fn settings(spec: &LeafSpec) -> Result<Paint<'_>, Error> {
 ///
 /// The first stage's that fails.
 pub fn generate(spec: &LeafSpec, seed: Seed, observer: &mut dyn Observer) -> Result<Leaf, Error> {
+    generate_with(spec, seed, Canvas::default, observer)
+}
+
+/// Makes a whole leaf, painted over pictures that nobody looks at any more; `canvas` is asked for them when it has
+/// grown.
+///
+/// # Errors
+///
+/// The first stage's that fails.
+pub fn generate_with(
+    spec: &LeafSpec,
+    seed: Seed,
+    canvas: impl FnOnce() -> Canvas,
+    observer: &mut dyn Observer,
+) -> Result<Leaf, Error> {
     let grown = grow(spec, seed, observer)?;
-    let textures = paint(spec, &grown, seed, observer)?;
+    let mut painter = Painter::new(&grown, seed);
+    painter.take_back(canvas());
+    let textures = painter.paint(spec, observer)?;
     Ok(Leaf { spec: spec.clone(), seed, grown, textures })
 }

@@ -43,6 +43,9 @@ const NECK: f64 = 0.74;
 /// A midrib with this share of the radius at the base is the only primary.
 const LEADS: f64 = 0.9;
 
+/// Of several primaries the petiole goes on in one that leaves the base within so many degrees of the leaf's axis.
+const STRAIGHT_ON_DEG: f64 = 12.0;
+
 /// The settings that a layout depends on.
 #[derive(Debug, Clone, PartialEq)]
 struct Laid {
@@ -125,7 +128,7 @@ impl Layout {
         let midrib: Vec<DVec2> =
             midrib.into_iter().map(|node| graph.positions()[node as usize]).collect();
         // Of a fan the widest vein is no midrib: the petiole ends at the base, and widens none of them.
-        let goes_on = goes_on && (leads || goes_straight_on(&midrib, neck));
+        let goes_on = goes_on && (leads || Stalk::off_deg(neck, &midrib).abs() < STRAIGHT_ON_DEG);
         let midrib = if goes_on { midrib } else { Vec::new() };
         let stalk = Stalk::new(paint.petiole, neck, &midrib, leads);
         let bounds = margin.bounds().joined(stalk.bounds());
@@ -221,16 +224,6 @@ impl Layout {
         }
         cover
     }
-}
-
-/// A vein that the petiole goes on in leaves the base within so many degrees of the leaf's axis, over so many of
-/// the petiole's radii.
-const STRAIGHT_ON_DEG: f64 = 12.0;
-const STRAIGHT_ON_RADII: f64 = 13.0;
-
-fn goes_straight_on(midrib: &[DVec2], neck: f64) -> bool {
-    let ahead = midrib.iter().find(|p| p.length() >= STRAIGHT_ON_RADII * neck);
-    ahead.is_none_or(|ahead| DVec2::Y.angle_to(*ahead).to_degrees().abs() < STRAIGHT_ON_DEG)
 }
 
 /// Where the speckles lie: darts on the blade, the same for both sides.

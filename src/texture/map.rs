@@ -317,12 +317,6 @@ impl MapSet {
         Self(self.0 | (1 << map as u32))
     }
 
-    /// The set without the plane of one map.
-    #[must_use]
-    pub const fn without(self, map: MapKind) -> Self {
-        Self(self.0 & !(1 << map as u32))
-    }
-
     /// Whether the plane of this map is kept; for `Orm` its transmission.
     #[must_use]
     #[inline]

@@ -97,7 +97,7 @@ impl Stalk {
     }
 
     /// How far a midrib is turned aside at its base (degrees, anticlockwise).
-    fn off_deg(neck: f64, midrib: &[DVec2]) -> f64 {
+    pub(super) fn off_deg(neck: f64, midrib: &[DVec2]) -> f64 {
         let reach = ROOT_RADII * neck;
         let ahead = midrib.iter().find(|p| p.length() >= reach);
         ahead.map_or(0.0, |ahead| DVec2::Y.angle_to(*ahead).to_degrees())

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use venation::io::write::{Overwrite, write_files};
 use venation::io::{self, LeafFiles};
-use venation::pipeline::{self, Leaf, Painter};
+use venation::pipeline;
 use venation::seed::Seed;
 use venation::texture::Canvas;
 
@@ -31,15 +31,8 @@ pub(super) fn make(
     canvases: &Canvases,
 ) -> Result<Made, Failure> {
     let mut bar = Bar::new(quiet, "");
-    let (spec, seed) = (job.spec.clone(), Seed(job.seed));
-    let grown = pipeline::grow(&spec, seed, &mut bar)?;
-    let canvas = canvases.list().pop().unwrap_or_default();
-    let textures = {
-        let mut painter = Painter::new(&grown, seed);
-        painter.take_back(canvas);
-        painter.paint(&spec, &mut bar)?
-    };
-    let leaf = Leaf { spec, seed, grown, textures };
+    let canvas = || canvases.list().pop().unwrap_or_default();
+    let leaf = pipeline::generate_with(&job.spec, Seed(job.seed), canvas, &mut bar)?;
     let files = io::encode_leaf(&LeafFiles::of(&leaf, &job.toml, &job.output));
     write_files(&job.folder, &files, overwrite)?;
     let made = Made {

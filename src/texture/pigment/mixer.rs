@@ -203,7 +203,7 @@ impl Mixer {
             let [upper, lower] = [(FRONT, 0.0), (BACK, self.felt)].map(|(face, felt)| {
                 let [net, seen] = tissue.veins_seen(&face, self.mottle);
                 // A felt hides the net, and of the veins all but what stands out of it.
-                let bare = 1.0 - felt * (1.0 - square / (square + HALF_KEPT_MM * HALF_KEPT_MM));
+                let bare = 1.0 - felt * (1.0 - cord);
                 (seen * bare).max(0.8 * net * (1.0 - felt)).min(1.0)
             });
             let upper = mixed(lamina, vein, upper);

@@ -7,6 +7,7 @@
 //! 0.36 deep inside, where nothing sharp depends on it; a test holds both.
 
 mod lattice;
+mod panel;
 mod smooth;
 
 use std::ops::Range;
@@ -15,6 +16,7 @@ use glam::DVec2;
 
 pub(super) use self::lattice::Lattice;
 use self::lattice::{coarse_edges, vein_lines};
+use self::panel::panels;
 use self::smooth::{NOISE_NODES_MM, Smooth, SmoothFields};
 use super::strip::{LANES, Lane};
 use crate::geometry::polygon;
@@ -37,18 +39,24 @@ pub(super) struct Place {
     pub speckle: f32,
     /// Broad, middle and fine noise (−1 – 1).
     pub noise: [f32; 3],
+    /// How far the panel between the larger veins has risen (0–1).
+    pub panel: f32,
 }
+
+/// Numbers of a place.
+pub(super) const NUMBERS: usize = 9;
 
 impl Place {
     #[inline(always)]
-    pub(super) fn array(self) -> [f32; 8] {
+    pub(super) fn array(self) -> [f32; NUMBERS] {
         let [a, b, c] = self.noise;
-        [self.edge, self.major, self.vein, self.from_veins, self.speckle, a, b, c]
+        [self.edge, self.major, self.vein, self.from_veins, self.speckle, a, b, c, self.panel]
     }
 
     #[inline(always)]
-    pub(super) fn of([edge, major, vein, from_veins, speckle, a, b, c]: [f32; 8]) -> Self {
-        Self { edge, major, vein, from_veins, speckle, noise: [a, b, c] }
+    pub(super) fn of(numbers: [f32; NUMBERS]) -> Self {
+        let [edge, major, vein, from_veins, speckle, a, b, c, panel] = numbers;
+        Self { edge, major, vein, from_veins, speckle, noise: [a, b, c], panel }
     }
 }
 
@@ -143,9 +151,11 @@ impl Guide {
         let wide = wide_nodes * coarse.side as f32 / side as f32;
         let spreading = coarse_edges(venation, reach.vein_spread);
         let coarse_nodes = || vec![0.0; coarse.side * coarse.side];
+        let major = coarse.distances(&major, &spans);
         let smooth = SmoothFields {
             side: coarse.side,
-            major: coarse.distances(&major, &spans),
+            panel: panels(coarse.side, coarse.spacing(), &major, &spans),
+            major,
             speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
             from_wide: coarse
                 .vein_weights(venation, &spreading, reach, wide..f32::INFINITY)
@@ -229,9 +239,9 @@ impl Guide {
 /// A place of both lattices.
 #[inline(always)]
 fn place(vein: f32, narrow: f32, smooth: &[f32; 8]) -> Place {
-    let [edge, major, speckle, a, b, c, wide, _] = *smooth;
+    let [edge, major, speckle, a, b, c, wide, panel] = *smooth;
     let from_veins = if wide > narrow { wide } else { narrow };
-    Place { edge, major, vein, from_veins, speckle, noise: [a, b, c] }
+    Place { edge, major, vein, from_veins, speckle, noise: [a, b, c], panel }
 }
 
 /// Some columns of the nodes of a lattice with so many a side mixed for a row of a texture of so many texels.
@@ -293,7 +303,7 @@ impl GuideRow<'_> {
     /// The guide at some columns of the texture, in the order of [`Place::array`]; past their end the last
     /// is repeated.
     #[inline(always)]
-    pub(super) fn read(&self, columns: Range<usize>, lanes: &mut [Lane; 8]) {
+    pub(super) fn read(&self, columns: Range<usize>, lanes: &mut [Lane; NUMBERS]) {
         // All of a node together, and then number by number.
         let (mut vein, mut narrow) = ([0.0; LANES], [0.0; LANES]);
         let mut smooth = [[0.0; 8]; LANES];
@@ -306,7 +316,7 @@ impl GuideRow<'_> {
         }
         for i in 0..LANES {
             let place = place(vein[i], narrow[i], &smooth[i]).array();
-            for k in 0..8 {
+            for k in 0..NUMBERS {
                 lanes[k][i] = place[k];
             }
         }
@@ -364,7 +374,7 @@ mod tests {
         let mut nodes = MixedRow::default();
         for y in 0..size {
             let row = guide.row(y, &(0..size), &mut nodes);
-            let mut lanes = [[0.0; LANES]; 8];
+            let mut lanes = [[0.0; LANES]; NUMBERS];
             for x in 0..size {
                 // Strip by strip, the last of them shorter.
                 let lane = x % LANES;

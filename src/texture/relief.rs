@@ -1,4 +1,5 @@
-//! Heights: veins sunken in front and raised behind, tissue quilted between them.
+//! Heights: veins sunken in front and raised behind, tissue quilted between them, and panels that arch
+//! between the larger ones.
 //!
 //! Source: Foster, section 2.3.6, for what is high and low, and the bump map; amplitudes follow
 //! real leaves (a groove of 0.3–0.5 vein radii above, a cord of 1–1.5 below, quilting of 10–50 µm).
@@ -21,6 +22,10 @@ parameters! {
         lamina_mm: number(0.22, 0.02..=5.0, "mm"),
         /// How far the tissue swells between the veins.
         quilting_mm: number(0.04, 0.0..=5.0, "mm"),
+        /// How far the blade arches up between its primaries and secondaries.
+        pleat_mm: number(0.3, 0.0..=10.0, "mm"),
+        /// Long waves of the blade, highest at the margin.
+        undulation_mm: number(0.3, 0.0..=10.0, "mm"),
         /// Fine speckle of the surface: 0 smooth, 1 rough (Foster's leaf roughness).
         roughness: number(0.35, 0.0..=1.0, ""),
         /// Shine of the upper side: 0 matt, 1 glossy; the lower side has a third of it.
@@ -48,6 +53,8 @@ pub(super) struct Relief {
     back_height: f32,
     lamina: f32,
     quilting: f32,
+    pleat: f32,
+    undulation: f32,
     /// Swell of an areole (mm), as far as the texels show areoles.
     areole: f32,
     roughness: f32,
@@ -61,6 +68,9 @@ const GRAIN_HEIGHT_MM: f32 = 0.012;
 
 /// The tissue has swollen half way at these distances from a larger, and from any vein (mm).
 const SWELL_MM: [f32; 2] = [1.6, 0.35];
+
+/// The blade's waves are half as high this far from the margin (mm).
+const WAVY_MM: f32 = 8.0;
 
 /// How far dead tissue shrinks, a rim stands up and a mine is blown up, as shares of the lamina.
 const SHRUNK: f32 = 0.12;
@@ -76,6 +86,8 @@ impl Relief {
             back_height: spec.back_height as f32,
             lamina: spec.lamina_mm as f32,
             quilting: spec.quilting_mm as f32,
+            pleat: spec.pleat_mm as f32,
+            undulation: spec.undulation_mm as f32,
             areole: 0.3 * spec.quilting_mm as f32 * shown,
             roughness: spec.roughness as f32,
             widest: widest as f32,
@@ -87,7 +99,8 @@ impl Relief {
     /// No height lies further than this from the plain blade (mm).
     pub(super) fn bound(&self) -> f32 {
         let veins = self.front_depth.max(self.back_height) * self.widest.max(self.root);
-        let tissue = self.quilting + self.areole + GRAIN_HEIGHT_MM * self.roughness;
+        let blade = self.pleat + self.undulation;
+        let tissue = blade + self.quilting + self.areole + GRAIN_HEIGHT_MM * self.roughness;
         // Never nothing: a flat leaf still needs a scale.
         ((veins + tissue).max(self.stalk) * 1.02).max(0.01)
     }
@@ -116,10 +129,13 @@ impl Relief {
             * (0.65 * swell(place.major, SWELL_MM[0]) + 0.35 * swell(place.vein, SWELL_MM[1]));
         let areole = self.areole * border / (border + 0.08);
         let rough = self.roughness * GRAIN_HEIGHT_MM * grain;
+        // The larger veins are stiff: what lies between them bends.
+        let at_margin = WAVY_MM / (WAVY_MM + place.edge.max(0.0));
+        let arch = place.panel * (self.pleat + self.undulation * at_margin * place.noise[0]);
         // A sunken vein is a wide groove, a raised one a round cord with a skirt.
         let groove = self.front_depth * (0.7 * vein.groove + 0.3 * vein.dome);
         let cord = self.back_height * (0.3 * vein.groove + 0.7 * vein.dome);
-        [quilt + areole + rough - groove, cord - 0.7 * quilt - areole + rough]
+        [arch + quilt + areole + rough - groove, cord - arch - 0.7 * quilt - areole + rough]
     }
 
     /// What injuries add to the heights of both sides (mm): dead and dry tissue shrinks, a mine is a blister,

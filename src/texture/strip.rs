@@ -6,7 +6,7 @@
 
 use super::damage::{Injury, WoundRow};
 use super::fields::{VeinAt, VeinRows};
-use super::guide::{GuideRow, Place};
+use super::guide::{self, GuideRow, Place};
 use super::petiole::StalkAt;
 use super::pigment::{Condition, Tissue};
 use super::relief::Ground;
@@ -66,8 +66,8 @@ pub(super) struct Strip {
     /// Where they lie (mm).
     pub(super) x: Lane,
     pub(super) y: f32,
-    /// Edge, major, vein, from veins, speckle, three noises, as in [`Place`].
-    guide: [Lane; 8],
+    /// Edge, major, vein, from veins, speckle, three noises, panel, as in [`Place`].
+    guide: [Lane; guide::NUMBERS],
     vein: Veins,
     lines: [Lane; 3],
     tones: [Lane; 3],
@@ -104,7 +104,7 @@ impl Strip {
             len: 0,
             x: zero,
             y: 0.0,
-            guide: [zero; 8],
+            guide: [zero; guide::NUMBERS],
             vein: Veins { cover: zero, radius: zero, dome: zero, groove: zero, order: [0; LANES] },
             lines: [zero; 3],
             tones: [zero; 3],

@@ -156,6 +156,33 @@ fn a_raised_vein_is_bright_red_on_its_right_side_and_a_sunken_one_on_its_left() 
 }
 
 #[test]
+fn the_blade_arches_between_its_larger_veins_up_in_front_and_hollow_behind() {
+    let margin = sample_leaf::ovate(60.0);
+    let mut settings = Settings::of_size(512);
+    settings.petiole.length_mm = 0.0;
+    let relief = &mut settings.relief;
+    (relief.front_depth, relief.back_height, relief.roughness) = (0.0, 0.0, 0.0);
+    (relief.quilting_mm, relief.undulation_mm, relief.pleat_mm) = (0.0, 0.0, 0.8);
+    let set = settings.painted(&margin, &midrib(&margin));
+    let back = set.back.height.mirrored();
+    let height = |map: &Grid<u16>, x_mm: f64| {
+        let at = set.frame.pixel_from_leaf(DVec2::new(x_mm, 30.0), 512);
+        (f64::from(map[(at.x as usize, at.y as usize)]) / 65535.0 - 0.5) * set.height_range_mm
+    };
+    let front = |x_mm: f64| height(&set.front.height, x_mm);
+    assert!(front(0.0) < 0.2, "{}", front(0.0));
+    for (near, far) in [(0.0, 2.0), (2.0, 5.0), (5.0, 9.0), (0.0, -4.0), (-4.0, -9.0)] {
+        assert!(front(far) > front(near) + 0.05, "{near} {far}");
+        assert!((front(far) + height(&back, far)).abs() < 0.001, "{far}");
+    }
+    // Three quarters of the way at three times the distance of half.
+    assert!((front(9.0) - 0.8 * 0.75).abs() < 0.03, "{}", front(9.0));
+    settings.relief.pleat_mm = 0.0;
+    let flat = settings.painted(&margin, &midrib(&margin));
+    assert!(flat.front.height.values().iter().all(|height| height.abs_diff(32768) <= 1));
+}
+
+#[test]
 fn empty_texels_wear_the_nearest_opaque_leaf() {
     let (margin, veins) = sample_leaf::veined();
     let set = Settings::of_size(64).painted(margin, veins);

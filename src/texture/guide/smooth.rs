@@ -19,7 +19,7 @@ pub(super) const NOISE_NODES_MM: f64 = 0.27;
 pub(super) struct Smooth {
     pub(super) side: usize,
     /// Edge, major and speckle as in [`Place`](super::Place), three noises, the weight of the colour that spreads from
-    /// the wide veins.
+    /// the wide veins, panel.
     pub(super) nodes: Vec<[f32; 8]>,
 }
 
@@ -30,6 +30,7 @@ pub(super) struct SmoothFields {
     pub(super) major: Vec<f32>,
     pub(super) speckle: Vec<f32>,
     pub(super) from_wide: Vec<f32>,
+    pub(super) panel: Vec<f32>,
     /// In each row the nodes from the first to the last that are not far outside.
     pub(super) spans: Vec<Range<usize>>,
 }
@@ -98,14 +99,15 @@ impl pulp::WithSimd for NodeRow<'_> {
         let Self { lattice, fields, columns, y, span, noises, nodes } = self;
         let (i, t) = between(y, fields.side as f32 / nodes.len() as f32, fields.side);
         let [lower, upper] = [i, i + 1].map(|i| i * fields.side..(i + 1) * fields.side);
-        let rows = [&fields.edge, &fields.major, &fields.speckle, &fields.from_wide]
+        let SmoothFields { edge, major, speckle, from_wide, panel, .. } = fields;
+        let rows = [edge, major, speckle, from_wide, panel]
             .map(|plane| [&plane[lower.clone()], &plane[upper.clone()]]);
         for (node, &(i, s)) in nodes.iter_mut().zip(columns) {
-            let [edge, major, speckle, wide] = rows.map(|[lower, upper]| {
+            let [edge, major, speckle, wide, panel] = rows.map(|[lower, upper]| {
                 let [a, b] = mixed(&[lower[i], lower[i + 1]], &[upper[i], upper[i + 1]], t);
                 a + (b - a) * s
             });
-            *node = [edge, major, speckle, 0.0, 0.0, 0.0, wide, 0.0];
+            *node = [edge, major, speckle, 0.0, 0.0, 0.0, wide, panel];
         }
         if span.is_empty() {
             return;

@@ -128,14 +128,14 @@ impl Painted {
         }
     }
 
-    /// Under the blade in front, over it behind.
+    /// The petiole, and the part of it that runs into the midrib.
     fn add_stalk(&mut self, scene: &Scene<'_>, strip: &Strip) {
         for i in 0..strip.len {
             let stalk = &strip.stalk[i];
             if stalk.cover == 0.0 {
                 continue;
             }
-            let shares = strip.stalk_shares(i);
+            let shares = strip.stalk_shares(i, scene.layout.shield);
             let shades = scene.pigments.stalk(stalk, scene.stalk_length, strip.fibre[i]);
             let [front, back] = scene.relief.stalk_heights(stalk);
             // Behind, stalk and midrib are one cord: whichever is higher.

@@ -98,6 +98,8 @@ pub(super) struct Layout {
     /// None where it is finer than the texels.
     pub(super) nets: [Option<Net>; 3],
     pub(super) stalk: Stalk,
+    /// Whether the petiole comes from below, into the blade.
+    pub(super) shield: bool,
     /// Radii of the widest vein and of the midrib where the petiole begins (mm).
     pub(super) widest: f64,
     pub(super) neck: f64,
@@ -177,6 +179,7 @@ impl Layout {
                 Net::new(size, cells, per_mm as f32, tissue ^ (0x51 + k as u32))
             }),
             stalk,
+            shield: margin.is_peltate(),
             widest,
             neck,
             wounds,

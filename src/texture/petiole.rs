@@ -1,7 +1,7 @@
-//! The stalk of the leaf: drawn under the blade in front and over it behind.
+//! The stalk of the leaf: drawn over the blade behind, and in front from the base down.
 //!
-//! Source: Foster, section 2.3.6. Departs from it: a bent, tapered stalk with a rounded end, its
-//! width and colour running into the midrib's, instead of a line.
+//! Source: Foster, section 2.3.6. Departs from it: a bent, tapered stalk, cut off where it sat on the stem, its
+//! width and colour running into the midrib's, instead of a line; in front it lies over the lobes beside it.
 
 use std::ops::Range;
 
@@ -27,6 +27,13 @@ parameters! {
         colour: group(Hsv, Hsv { hue_deg: 70.0, saturation: 0.45, value: 0.55 }),
     }
 }
+
+/// A stalk is thicker by this share where it sat on the stem, over so many of its radii.
+const CUSHION: f64 = 0.14;
+const CUSHION_RADII: f32 = 7.0;
+
+/// How far its end bulges out, in radii: a scar, no ball.
+const SCAR: f32 = 0.22;
 
 /// Straight pieces of the stalk: at 80° of bend they turn by 2° each, which no eye finds.
 const PIECES: usize = 40;
@@ -84,7 +91,8 @@ impl Stalk {
             // Most of the widening right below the blade, then a slow taper.
             let widening = f64::from(0.6 * smooth(0.0, 0.55, t) + 0.4 * t);
             // The cushion by which it sits on the stem.
-            let cushion = 1.0 + 0.12 * f64::from(smooth(0.88, 1.0, t));
+            let left = (length - step * i as f64) / stem_radius;
+            let cushion = 1.0 + CUSHION * f64::from(1.0 - smooth(0.0, CUSHION_RADII, left as f32));
             points.push(point);
             radii.push((neck + (stem_radius - neck) * widening) * cushion);
             along.push(step * i as f64);
@@ -155,6 +163,13 @@ impl Stalk {
     ) -> Option<Vec<StalkAt>> {
         let per_mm = frame.pixels_per_mm(size);
         let mm = 1.0 / per_mm as f32;
+        let [before, at] = [2, 1].map(|back| {
+            let point = self.points[self.points.len().saturating_sub(back)];
+            frame.pixel_from_leaf(point, size).as_vec2()
+        });
+        let radius = (self.radii[self.radii.len() - 1] * per_mm) as f32;
+        let along = self.along[self.along.len() - 1] as f32;
+        let end = End { at, ahead: (at - before).normalize_or_zero(), radius, along };
         // And how far from the axis each texel is, squared.
         let mut texels: Option<(Vec<StalkAt>, Vec<f32>)> = None;
         for i in 1..self.points.len() {
@@ -173,24 +188,49 @@ impl Stalk {
                 });
                 for x in columns.clone() {
                     let centre = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                    let (distance2, t) = capsule.nearest(centre);
+                    let (mut distance2, t) = capsule.nearest(centre);
+                    let (mut radius, mut along) = (capsule.radius(t), from + (to - from) * t);
+                    // Of a short stalk many pieces reach over the end.
+                    if let Some(beyond) = end.beyond(centre) {
+                        (distance2, radius, along) = (beyond, end.radius, end.along);
+                    }
                     let index = (y - rows.start) * size + x;
                     // Neighbouring pieces overlap: the wide round end of a short stalk lies over all of it.
                     if distance2 >= nearest[index] {
                         continue;
                     }
                     nearest[index] = distance2;
-                    let radius = capsule.radius(t);
                     texels[index] = StalkAt {
                         cover: stroke_share(distance2.sqrt(), radius, 0.5),
                         radius: radius * mm,
                         dome: (radius * radius - distance2).max(0.0).sqrt() * mm,
-                        along: from + (to - from) * t,
+                        along,
                     };
                 }
             }
         }
         texels.map(|(texels, _)| texels)
+    }
+}
+
+/// Where a stalk is cut off (pixels).
+struct End {
+    at: Vec2,
+    ahead: Vec2,
+    radius: f32,
+    /// From the blade (mm).
+    along: f32,
+}
+
+impl End {
+    /// The squared distance of a point beyond the end, by which it is a flat ellipse instead of a ball; nothing of
+    /// other points.
+    fn beyond(&self, p: Vec2) -> Option<f32> {
+        let to = p - self.at;
+        let along = to.dot(self.ahead);
+        // A bent stalk may pass the line of its end elsewhere.
+        let here = along > 0.0 && to.length_squared() < (2.0 * self.radius).powi(2);
+        here.then(|| to.length_squared() - along * along + (along / SCAR).powi(2))
     }
 }
 
@@ -208,6 +248,33 @@ mod tests {
         assert!((last.angle_to(DVec2::NEG_Y).abs().to_degrees() - 80.0).abs() < 1e-6);
         assert!(stalk.end().x > 0.0 && stalk.end().y < 0.0);
         assert!((stalk.radii[1] - 0.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_end_is_cut_off_however_short_the_stalk() {
+        for length_mm in [1.0, 30.0] {
+            let spec = PetioleSpec { length_mm, width_mm: 2.0, ..PetioleSpec::default() };
+            let stalk = Stalk::new(&spec, 0.6, &[], true);
+            let frame = TextureFrame { min: stalk.end() - DVec2::splat(4.0), side_mm: 8.0 };
+            let rows = stalk.rows(&frame, 256, 0..256).expect("a stalk");
+            let ahead = Angle::from_degrees(spec.bend_deg);
+            let ahead = DVec2::new(ahead.cos(), ahead.sin()).rotate(DVec2::NEG_Y);
+            let cover = |along: f64, across: f64| {
+                let p =
+                    frame.pixel_from_leaf(stalk.end() + ahead * along + ahead.perp() * across, 256);
+                rows[p.y as usize * 256 + p.x as usize].cover
+            };
+            // A ball would reach as far as the stalk is thick.
+            for (along, across, seen) in [
+                (-0.1, 0.9, 1.0),
+                (-0.1, -0.9, 1.0),
+                (0.15, 0.0, 1.0),
+                (0.35, 0.0, 0.0),
+                (0.3, 0.5, 0.0),
+            ] {
+                assert_eq!(cover(along, across), seen, "{length_mm} {along} {across}");
+            }
+        }
     }
 
     #[test]

@@ -335,16 +335,18 @@ impl Strip {
         1.0 - (1.0 - self.blade[i]) * (1.0 - stalk)
     }
 
-    /// How much of what is seen of a texel is the stalk: under the blade in front, over it behind.
-    pub(super) fn stalk_shares(&self, i: usize) -> [f32; 2] {
+    /// How much of what is seen of a texel is the stalk: over the blade, of which it comes out at the base; in
+    /// front of a shield under it.
+    pub(super) fn stalk_shares(&self, i: usize, shield: bool) -> [f32; 2] {
         let (blade, stalk) = (self.blade[i], self.stalk[i].cover);
         let seen = blade + stalk - blade * stalk;
         if stalk == 0.0 || seen <= 0.0 {
             return [0.0; 2];
         }
         let (under, over) = (stalk * (1.0 - blade) / seen, stalk / seen);
-        // Its upper end dips into the midrib.
-        let emerged = smooth(-4.0, 1.0, self.stalk[i].along / self.stalk[i].radius.max(1e-6));
-        [under, under + (over - under) * emerged]
+        // Its upper end dips into the midrib, which in front is seen to its end.
+        let along = self.stalk[i].along / self.stalk[i].radius.max(1e-6);
+        let above = if shield { 0.0 } else { smooth(-0.4, 0.6, along) };
+        [above, smooth(-4.0, 1.0, along)].map(|emerged| under + (over - under) * emerged)
     }
 }

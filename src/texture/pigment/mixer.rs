@@ -297,7 +297,7 @@ impl Mixer {
     fn aged(&self, mut mix: Mix, tissue: &Tissue, turned: &Turned, red: f32) -> Mix {
         let condition = &tissue.condition;
         // Chlorophyll fades where its colour changes evenly.
-        let left = turned.chlorophyll * self.young[0] * (1.0 - 0.92 * condition.chlorosis);
+        let left = turned.chlorophyll * self.young[0] * (1.0 - 0.86 * condition.chlorosis);
         let green = mix[0] / (mix[0] + HALF_GREEN) * left;
         mix[0] = HALF_GREEN * green / (1.0 - green);
         mix[1] *= turned.carotenoid * self.young[1] * (1.0 - 0.3 * condition.chlorosis);

@@ -56,6 +56,9 @@ parameters! {
     }
 }
 
+/// A starved leaf is half green this far from its larger veins (mm).
+const GREEN_MM: f32 = 1.3;
+
 /// Where one place stands.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(in crate::texture) struct Condition {
@@ -142,9 +145,10 @@ impl Course {
         let late = 1.0 - early.clamp(0.0, 1.0);
         let season = (self.season * (1.0 + self.spread) - self.spread * late).clamp(0.0, 1.0);
         // Green stays along the veins; what lies farthest from them, and the rim, dies first.
-        let between = tissue.panel() * smooth(0.0, 0.6, place.vein);
-        let starved = 0.35 + 0.65 * between + 0.25 * middle;
-        let chlorosis = (self.sickness * 1.3 * starved).clamp(0.0, 1.0);
+        let away = place.major * place.major / (place.major * place.major + GREEN_MM * GREEN_MM);
+        let between = away * (0.72 + 0.28 * smooth(0.0, 0.5, place.vein));
+        let starved = 0.05 + 1.05 * between + 0.2 * away * (middle + broad);
+        let chlorosis = (self.sickness * 1.35 * starved).clamp(0.0, 1.0);
         let ill = 1.7 * self.sickness - 1.25 + 0.75 * margin + 0.3 * broad + 0.25 * middle
             - 0.3 * by_vein;
         let sick = if self.sickness > 0.0 { 1.0 } else { 0.0 };

@@ -1,5 +1,6 @@
 //! `venation generate`: leaves into folders.
 
+mod difference;
 mod job;
 mod making;
 mod notes;
@@ -69,7 +70,8 @@ pub(crate) struct Args {
     /// that Open Job Description reads, on stdout.
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto")]
     progress: ProgressWord,
-    /// Leave leaves alone that are there already with the same settings.
+    /// Go on where an earlier run stopped: leave leaves alone that are there with the same settings and all
+    /// files asked for, make anew those that lack some; refuse folders of other leaves.
     #[arg(long, conflicts_with = "force")]
     skip_existing: bool,
 }
@@ -119,21 +121,24 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if let Some(formats) = &args.format {
         document.insert("output.formats", Value::Text(formats.clone()), "--format");
     }
-    let batch = Batch::new(args, &document)?;
+    let mut batch = Batch::new(args, &document)?;
     let overwrite = args.run.overwrite();
     // Nothing is grown before it is known that everything may be written.
-    let todo: Vec<(&Job, Overwrite)> = if args.skip_existing {
-        batch.jobs.iter().filter(|job| !job.is_done()).map(|job| (job, job.resume())).collect()
-    } else {
-        batch.jobs.iter().map(|job| (job, overwrite)).collect()
-    };
+    let go_on = |job: &mut Job| if args.skip_existing { job.go_on() } else { Ok(Some(overwrite)) };
+    let plans: Vec<_> = batch.jobs.iter_mut().map(go_on).collect::<Result<_, _>>()?;
+    let planned = batch.jobs.iter().zip(plans);
+    let todo: Vec<(&Job, Overwrite)> =
+        planned.filter_map(|(job, plan)| Some((job, plan?))).collect();
     for (job, overwrite) in &todo {
         let files = job.collisions();
         if *overwrite == Overwrite::Refuse && !files.is_empty() {
             let folder = job.folder.clone();
             let error = io::Error::WouldOverwrite { folder, files };
-            let problem = format!("{error}; --force overwrites, --skip-existing goes on");
-            return Err(Failure::Exists(problem));
+            let advice = match args.skip_existing {
+                true => "no leaf.toml tells whose they are; --force overwrites",
+                false => "--force overwrites, --skip-existing goes on",
+            };
+            return Err(Failure::Exists(format!("{error}; {advice}")));
         }
     }
     batch.check()?;

@@ -241,6 +241,30 @@ impl OutputSpec {
     }
 }
 
+impl OutputSpec {
+    /// The same with the maps and formats of another added.
+    ///
+    /// # Errors
+    ///
+    /// As [`resolve`](Self::resolve), of either.
+    pub fn joined(&self, other: &Self) -> Result<Self, OutputError> {
+        let (own, others) = (self.resolve()?, other.resolve()?);
+        let mut joined = self.clone();
+        if !others.maps.iter().all(|map| own.maps.contains(map)) {
+            let of_either = |map: &&MapKind| own.maps.contains(map) || others.maps.contains(map);
+            let words = MapKind::ALL.iter().filter(of_either).map(|map| map.word());
+            joined.maps = words.collect::<Vec<_>>().join(",");
+        }
+        if !others.formats.iter().all(|format| own.formats.contains(format)) {
+            let of_either =
+                |kind: &&FormatKind| own.formats.contains(kind) || others.formats.contains(kind);
+            let words = FormatKind::ALL.iter().filter(of_either).map(|kind| kind.word());
+            joined.formats = words.collect::<Vec<_>>().join(",");
+        }
+        Ok(joined)
+    }
+}
+
 fn format(word: &str) -> Result<FormatKind, OutputError> {
     let word = word.trim();
     let known = FormatKind::ALL.iter().copied().find(|kind| kind.word().eq_ignore_ascii_case(word));

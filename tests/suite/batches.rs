@@ -144,21 +144,6 @@ fn every_seed_is_read_back_from_the_settings() {
     support::assert_same(&folder.path().join("a"), &folder.path().join("b"));
 }
 
-#[test]
-fn a_leaf_is_made_again_when_what_its_files_hold_would_change() {
-    let folder = fresh();
-    let batch = ["generate", "beech", "--seeds", "1-2", "-o", "out", "--skip-existing"];
-    succeed(folder.path(), &small(&batch));
-    let (_, _, stderr) = run(folder.path(), &small(&batch));
-    assert!(stderr.contains("2 of 2 leaves were there already"), "{stderr}");
-    let name = folder.path().join("out/fagus-sylvatica_s0001/fagus-sylvatica_BaseColor.png");
-    let depth = || std::fs::read(&name).unwrap()[24];
-    assert_eq!(depth(), 8);
-    // The same names, other bytes: the hash of the settings tells.
-    succeed(folder.path(), &small(&[&batch[..], &["--bits", "16"]].concat()));
-    assert_eq!(depth(), 16);
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn what_a_killed_run_left_half_written_goes_with_the_next_run() {

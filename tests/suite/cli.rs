@@ -55,27 +55,6 @@ fn an_existing_leaf_is_not_overwritten_unless_forced() {
 }
 
 #[test]
-fn skip_existing_completes_a_killed_batch_and_refuses_strangers() {
-    let folder = fresh();
-    let arguments = small(&["generate", "beech", "--seeds", "1-3", "-o", "out", "--skip-existing"]);
-    succeed(folder.path(), &arguments);
-    let out = folder.path().join("out");
-    let whole = contents(&out);
-    // A run killed in the middle of leaf 2 leaves it without its manifest.
-    let leaf = out.join("fagus-sylvatica_s0002");
-    std::fs::remove_file(leaf.join("manifest.json")).unwrap();
-    std::fs::remove_file(leaf.join("fagus-sylvatica_Normal.png")).unwrap();
-    let (code, _, stderr) = run(folder.path(), &arguments);
-    assert_eq!(code, 0, "{stderr}");
-    assert!(stderr.contains("2 of 3 leaves were there already"), "{stderr}");
-    assert_eq!(contents(&out), whole);
-    // Another leaf's settings in the same place are not touched.
-    let other = [&arguments[..], &["--set", "texture.gutter=0.1"]].concat();
-    fail(folder.path(), 3, &other);
-    assert_eq!(contents(&out), whole);
-}
-
-#[test]
 fn seed_3_alone_equals_seed_3_of_a_batch_on_any_number_of_threads() {
     let folder = fresh();
     succeed(
@@ -359,55 +338,6 @@ fn bench_prints_a_table_and_the_exponent() {
     assert!(out.contains("exponent"), "{out}");
     let table = std::fs::read_to_string(folder.path().join("b.csv")).unwrap();
     assert_eq!(table.lines().count(), 4, "{table}");
-}
-
-#[test]
-fn a_killed_run_leaves_whole_files_and_goes_on_where_it_stopped() {
-    let folder = fresh();
-    let arguments = small(&["generate", "beech", "--seeds", "1-12", "-t", "1"]);
-    let killed = [&arguments[..], &["-o", "killed", "--skip-existing"]].concat();
-    let program = assert_cmd::cargo::cargo_bin("venation");
-    let mut child = std::process::Command::new(program)
-        .current_dir(folder.path())
-        .args(&killed)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    // Wait until some leaf is being written, then pull the plug.
-    let out = folder.path().join("killed");
-    while child.try_wait().unwrap().is_none() && !out.exists() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    for (name, bytes) in contents(&out) {
-        if name.extension().is_some_and(|e| e == "png") {
-            assert!(bytes.ends_with(b"IEND\xaeB`\x82"), "{} is cut off", name.display());
-        }
-    }
-    succeed(folder.path(), &killed);
-    succeed(folder.path(), &[&arguments[..], &["-o", "whole"]].concat());
-    let finished = |name: &str| {
-        let mut files = contents(&folder.path().join(name));
-        // What the killed run was in the middle of writing keeps its temporary name.
-        files.retain(|path, _| !path.to_string_lossy().contains(".venation"));
-        files
-    };
-    assert!(finished("killed") == finished("whole"));
-}
-
-#[test]
-fn skip_existing_makes_files_that_are_missing_or_newly_asked_for() {
-    let folder = fresh();
-    let arguments = small(&["generate", "beech", "-o", "out", "--skip-existing"]);
-    succeed(folder.path(), &arguments);
-    let out = folder.path().join("out");
-    let whole = contents(&out);
-    std::fs::remove_file(out.join("back/fagus-sylvatica_Height.png")).unwrap();
-    succeed(folder.path(), &arguments);
-    assert_eq!(contents(&out), whole);
-    succeed(folder.path(), &[&arguments[..], &["--format", "obj,svg"]].concat());
-    assert!(out.join("fagus-sylvatica.svg").is_file());
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod material; // light, seasons, films and wounds
 mod morph; // one leaf turning into another
 mod presets; // every leaf that comes with venation
 mod reference; // open and closed venation, slow and obvious
+mod resuming; // `--skip-existing`: what a run goes on with, and what it refuses
 mod rows; // the rows of `inspect`, in whole leaves
 mod sample_leaf; // an artificial leaf with veins, for tests of what comes after growth
 mod shell; // schema, completions, manual

@@ -7,9 +7,11 @@ use venation::io::batch::BatchLine;
 use venation::io::manifest::Manifest;
 use venation::io::write::{Overwrite, collisions};
 use venation::io::{self, MANIFEST_FILE, SPEC_FILE};
+use venation::seed::Seed;
 use venation::spec::{LeafSpec, Output};
 
 use super::super::{Failure, leaf_args};
+use super::difference::difference;
 
 /// One leaf to make.
 pub(super) struct Job {
@@ -38,8 +40,7 @@ impl Job {
         let root = root.cloned().unwrap_or_else(|| PathBuf::from(&spec.name));
         let subfolder = if single { String::new() } else { format!("{}_s{seed:04}", spec.name) };
         let folder = if single { root } else { root.join(&subfolder) };
-        let toml = Document::of_spec(&spec, seed).to_toml(Comments::None);
-        let output = spec.output.resolve().map_err(venation::error::Error::from)?;
+        let (toml, output) = settings(&spec, seed)?;
         Ok(Self { seed, spec, varied, folder, subfolder, toml, output })
     }
 
@@ -49,10 +50,53 @@ impl Job {
     }
 
     /// Whether an earlier run finished this very leaf (the manifest is written last, and carries the
-    /// hash of its settings) and every file that is wanted is there.
+    /// hash of its settings) and made every file that is wanted, which is still there.
     pub(super) fn is_done(&self) -> bool {
-        self.manifest().is_some_and(|manifest| manifest.settings_sha256 == self.settings_sha256())
-            && self.names().iter().all(|name| self.folder.join(name).is_file())
+        let Some(manifest) = self.manifest() else { return false };
+        // A file that the manifest does not tell of is of another leaf.
+        let is_there = |name: &String| {
+            let size = self.folder.join(name).metadata().ok().filter(|data| data.is_file());
+            let record = manifest.files.iter().find(|file| file.path == *name);
+            size.is_some_and(|data| record.is_some_and(|file| file.bytes as u64 == data.len()))
+        };
+        manifest.settings_sha256 == self.settings_sha256()
+            && self.names().iter().filter(|name| *name != MANIFEST_FILE).all(is_there)
+    }
+
+    /// Goes on where an earlier run stopped: what becomes of the files that are there, `None` when
+    /// nothing is left to do.
+    ///
+    /// A run of this very leaf may be completed over; of one that was finished with other maps or formats
+    /// those stay, so that its manifest tells of all that is there.
+    pub(super) fn go_on(&mut self) -> Result<Option<Overwrite>, Failure> {
+        if self.is_done() {
+            return Ok(None);
+        }
+        // Where no settings are, the files are other people's.
+        let Ok(text) = std::fs::read_to_string(self.folder.join(SPEC_FILE)) else {
+            return Ok(Some(Overwrite::Refuse));
+        };
+        if io::settings_sha256(&text) != self.settings_sha256() {
+            let folder = self.folder.display();
+            let what = difference(&text, &self.toml);
+            let problem = format!(
+                "{folder}: holds another leaf: {what}; --force overwrites, another -o keeps both"
+            );
+            return Err(Failure::Exists(problem));
+        }
+        if self.manifest().is_some() {
+            self.join(&text)?;
+        }
+        Ok(Some(Overwrite::Force))
+    }
+
+    /// Adds the maps and formats of the settings that are there.
+    fn join(&mut self, text: &str) -> Result<(), Failure> {
+        let there = Document::parse(text, SPEC_FILE)?.resolve(Seed(self.seed))?;
+        let joined = self.spec.output.joined(&there.output);
+        self.spec.output = joined.map_err(venation::error::Error::from)?;
+        (self.toml, self.output) = settings(&self.spec, self.seed)?;
+        Ok(())
     }
 
     fn manifest(&self) -> Option<Manifest> {
@@ -62,15 +106,6 @@ impl Job {
 
     pub(super) fn settings_sha256(&self) -> String {
         io::settings_sha256(&self.toml)
-    }
-
-    /// A killed run of this very leaf may be completed over, in other forms too; other people's files
-    /// may not.
-    pub(super) fn resume(&self) -> Overwrite {
-        let leaf = |text: &str| text.split("\n[output]").next().map(str::to_owned);
-        let same = std::fs::read_to_string(self.folder.join(SPEC_FILE))
-            .is_ok_and(|text| leaf(&text) == leaf(&self.toml));
-        if same { Overwrite::Force } else { Overwrite::Refuse }
     }
 
     /// The files in the way.
@@ -93,4 +128,10 @@ impl Job {
             },
         }
     }
+}
+
+/// The settings of a leaf as text, and what they say is to be written.
+fn settings(spec: &LeafSpec, seed: u64) -> Result<(String, Output), Failure> {
+    let toml = Document::of_spec(spec, seed).to_toml(Comments::None);
+    Ok((toml, spec.output.resolve().map_err(venation::error::Error::from)?))
 }

@@ -8,6 +8,8 @@
 //! A field of `records` is a list of groups (one a lobe, say). Its knobs are listed once, with
 //! [`RECORD`] where a document has the number of the record: `margin.lobe.N.angle_deg`.
 
+mod words;
+
 /// One knob.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
@@ -40,6 +42,8 @@ pub enum Kind {
         /// Unit, empty for a plain count.
         unit: &'static str,
     },
+    /// One whole number of a few; a document may give no range of them.
+    OneOf(&'static [u64]),
     /// One word of a list.
     Choice(&'static [&'static str]),
     /// Any text.
@@ -142,6 +146,7 @@ pub(crate) fn add_records(tree: &mut toml::Table, key: &str, inner: toml::Table)
 ///         /// Doc of the knob, shown in help and files.
 ///         scale: number(1.0, 0.01..=1.0, ""),
 ///         steps: count(600, 1..=100_000, "steps"),
+///         bits: one_of(8, &[8, 16]),
 ///         r#type: choice(GrowthType, GrowthType::Isotropic),
 ///         front: group(SideColour, SideColour::default()),
 ///         spot: records(SpotSpec),
@@ -208,6 +213,7 @@ macro_rules! parameters {
 macro_rules! field_type {
     (number $x:tt) => { f64 };
     (count $x:tt) => { u64 };
+    (one_of $x:tt) => { u64 };
     (choice ($T:ty, $default:expr)) => { $T };
     (text $x:tt) => { String };
     (flag $x:tt) => { bool };
@@ -223,6 +229,9 @@ macro_rules! field_default {
         $default
     };
     (count ($default:expr, $limits:expr, $unit:expr)) => {
+        $default
+    };
+    (one_of ($default:expr, $numbers:expr)) => {
         $default
     };
     (choice ($T:ty, $default:expr)) => {
@@ -296,6 +305,9 @@ macro_rules! field_kind {
         let limits = $limits;
         $crate::parameter::Kind::Count { min: *limits.start(), max: *limits.end(), unit: $unit }
     }};
+    (one_of ($default:expr, $numbers:expr)) => {
+        $crate::parameter::Kind::OneOf($numbers)
+    };
     (choice ($T:ty, $default:expr)) => {
         $crate::parameter::Kind::Choice(<$T as $crate::parameter::Choice>::WORDS)
     };
@@ -345,53 +357,8 @@ macro_rules! field_outside {
     }};
 }
 
-/// Declares an enum of plain words: serde in kebab-case, [`Choice`], `Display` and `FromStr`.
-macro_rules! words {
-    (
-        $(#[$attribute:meta])*
-        pub enum $Name:ident { $( $(#[doc = $doc:literal])+ $Variant:ident = $word:literal ),* $(,)? }
-    ) => {
-        $(#[$attribute])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-        pub enum $Name { $( $(#[doc = $doc])+ #[serde(rename = $word)] $Variant, )* }
-
-        impl $Name {
-            /// Every variant, in order.
-            pub const ALL: &'static [Self] = &[$( Self::$Variant ),*];
-
-            /// The word for it in files and on the command line.
-            #[must_use]
-            pub const fn word(self) -> &'static str {
-                match self { $( Self::$Variant => $word ),* }
-            }
-        }
-
-        impl $crate::parameter::Choice for $Name {
-            const WORDS: &'static [&'static str] = &[$( $word ),*];
-        }
-
-        impl std::str::FromStr for $Name {
-            type Err = $crate::parameter::UnknownWord;
-
-            fn from_str(text: &str) -> Result<Self, Self::Err> {
-                Self::ALL.iter().copied().find(|variant| variant.word() == text).ok_or_else(|| {
-                    $crate::parameter::UnknownWord {
-                        word: text.to_owned(),
-                        words: <Self as $crate::parameter::Choice>::WORDS,
-                    }
-                })
-            }
-        }
-
-        impl std::fmt::Display for $Name {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad(self.word())
-            }
-        }
-    };
-}
-
+pub(crate) use words::words;
 pub(crate) use {
     field_default, field_defaults, field_kind, field_outside, field_parameters, field_type,
-    parameters, words,
+    parameters,
 };

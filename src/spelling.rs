@@ -17,12 +17,18 @@ pub(crate) fn nearest<'a>(
         .map(|(_, candidate)| candidate)
 }
 
-/// What is wrong with a word that is none of a `kind`'s, to stand after it.
+/// What is wrong with a word in a list that is none of a `kind`'s, to stand after it. (`all` and `none` alone
+/// are no list.)
 pub(crate) fn advice<'a>(
     word: &str,
     kind: &str,
     words: impl Iterator<Item = &'a str> + Clone,
 ) -> String {
+    match word.to_ascii_lowercase().as_str() {
+        "none" | "all" => return format!("stands alone; name no other {kind} beside it"),
+        "" => return format!("is no {kind}; write `none` for none, and one word between commas"),
+        _ => {}
+    }
     match nearest(word, LIKE_A_KEY, words.clone()) {
         Some(near) => format!("is no {kind}; did you mean `{near}`?"),
         None => format!("is none of {}", words.collect::<Vec<_>>().join(", ")),

@@ -200,12 +200,12 @@ fn read(value: &DeValue<'_>, parameter: &Parameter) -> Result<Value, String> {
         (Kind::Number { .. } | Kind::Count { .. }, DeValue::String(text)) => {
             number_text(text, parameter)?
         }
-        (Kind::Number { .. } | Kind::Count { .. }, DeValue::Array(ends)) => {
+        (Kind::Number { .. } | Kind::Count { .. } | Kind::OneOf(_), DeValue::Array(ends)) => {
             let [low, high] = &ends[..] else { return Err(takes()) };
             let end = |v: &DeValue<'_>| float(v).ok_or_else(takes);
             range(end(low.get_ref())?, end(high.get_ref())?, parameter)?
         }
-        (Kind::Number { .. } | Kind::Count { .. }, value) => {
+        (Kind::Number { .. } | Kind::Count { .. } | Kind::OneOf(_), value) => {
             let x = float(value).ok_or_else(takes)?;
             range(x, x, parameter)?
         }
@@ -232,7 +232,11 @@ fn check(value: Value, parameter: &Parameter) -> Result<Value, String> {
 fn number_text(text: &str, parameter: &Parameter) -> Result<Value, String> {
     let takes = || {
         let takes = kind_in_words(&parameter.kind);
-        format!("{} = `{text}`: it takes {takes}, `min..max` or `middle±percent%`", parameter.key)
+        let forms = match parameter.kind {
+            Kind::OneOf(_) => "",
+            _ => ", `min..max` or `middle±percent%`",
+        };
+        format!("{} = `{text}`: it takes {takes}{forms}", parameter.key)
     };
     let number = |text: &str| text.trim().parse::<f64>().map_err(|_| takes());
     if let Some((low, high)) = text.split_once("..") {
@@ -250,19 +254,27 @@ fn number_text(text: &str, parameter: &Parameter) -> Result<Value, String> {
 }
 
 fn range(low: f64, high: f64, parameter: &Parameter) -> Result<Value, String> {
-    let Kind::Count { min, max, .. } = parameter.kind else {
-        return Ok(Value::Number { low, high });
+    let whole = |x: f64| match x.is_finite() && x.fract() == 0.0 {
+        true => Ok(x),
+        false => Err(format!("{} = {x} is not a whole number", parameter.key)),
     };
-    let whole = |x: f64| {
-        if !x.is_finite() || x.fract() != 0.0 {
-            return Err(format!("{} = {x} is not a whole number", parameter.key));
+    match parameter.kind {
+        Kind::Count { min, max, .. } => {
+            let within = |x: f64| {
+                if whole(x)? < min as f64 || x > max as f64 {
+                    return Err(format!("{} = {x} is outside {min} to {max}", parameter.key));
+                }
+                Ok(x as u64)
+            };
+            Ok(Value::Count { low: within(low)?, high: within(high)? })
         }
-        if x < min as f64 || x > max as f64 {
-            return Err(format!("{} = {x} is outside {min} to {max}", parameter.key));
+        Kind::OneOf(_) if low < 0.0 || low > high || whole(low).and(whole(high)).is_err() => {
+            let shown = if low == high { low.to_string() } else { format!("{low}..{high}") };
+            Err(format!("{} = {shown}: it takes {}", parameter.key, kind_in_words(&parameter.kind)))
         }
-        Ok(x as u64)
-    };
-    Ok(Value::Count { low: whole(low)?, high: whole(high)? })
+        Kind::OneOf(_) => Ok(Value::Count { low: low as u64, high: high as u64 }),
+        _ => Ok(Value::Number { low, high }),
+    }
 }
 
 /// A whole number, read from its digits and their base.

@@ -7,6 +7,8 @@ use serde_json::{Value as Json, json};
 
 use super::{Value, parameters, records, value};
 use crate::parameter::{Kind, Parameter};
+use crate::spec::FormatKind;
+use crate::texture::map::MapKind;
 
 /// The schema.
 #[must_use]
@@ -103,8 +105,12 @@ fn property(parameter: &Parameter) -> Json {
         Kind::Count { min, max, .. } => {
             ranged(&json!({ "type": "integer", "minimum": min, "maximum": max }))
         }
+        Kind::OneOf(numbers) => json!({ "enum": numbers }),
         Kind::Choice(words) => json!({ "enum": words }),
-        Kind::Text => json!({ "type": "string" }),
+        Kind::Text => match pattern(&parameter.key) {
+            Some(pattern) => json!({ "type": "string", "pattern": pattern }),
+            None => json!({ "type": "string" }),
+        },
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Points => points(),
         Kind::Lines => json!({ "type": "array", "items": points() }),
@@ -120,6 +126,30 @@ fn property(parameter: &Parameter) -> Json {
         property["default"] = default;
     }
     property
+}
+
+/// What text a key takes, as a regular expression; `None` where any will do.
+fn pattern(key: &str) -> Option<String> {
+    match key {
+        // Files are called after it.
+        "name" => Some("^[A-Za-z0-9_-]{1,100}$".to_owned()),
+        "output.maps" => {
+            let maps = MapKind::ALL.iter().map(|map| map.word());
+            Some(list_of(maps.chain(["ao", "default"])))
+        }
+        "output.formats" => Some(list_of(FormatKind::ALL.iter().map(|format| format.word()))),
+        _ => None,
+    }
+}
+
+/// Words with commas between them, or one of those that stand alone. Expressions know no other way to
+/// take large letters for small ones.
+fn list_of<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let letter = |c: char| format!("[{c}{}]", c.to_ascii_uppercase());
+    let word = |word: &str| word.chars().map(letter).collect::<String>();
+    let words = words.map(word).collect::<Vec<_>>().join("|");
+    let (all, none) = (word("all"), word("none"));
+    format!("^\\s*({all}|{none}|({words})(\\s*,\\s*({words}))*)\\s*$")
 }
 
 /// A value, a pair of ends, or either as text.

@@ -70,6 +70,13 @@ impl Value {
                 let outside = [low, high].into_iter().find(|end| *end < min || *end > max)?;
                 Some(format!("{key} = {outside} is outside {min} to {max}"))
             }
+            (Self::Count { low, high }, Kind::OneOf(numbers)) => {
+                if low == high && numbers.contains(low) {
+                    return None;
+                }
+                let shown = if low == high { low.to_string() } else { format!("{low}..{high}") };
+                Some(format!("{key} = {shown}: it takes {}", kind_in_words(&parameter.kind)))
+            }
             (Self::Text(word), Kind::Choice(words)) => {
                 if words.contains(&word.as_str()) {
                     return None;
@@ -102,6 +109,10 @@ pub(super) fn kind_in_words(kind: &Kind) -> String {
     match kind {
         Kind::Number { .. } => "a number or a range [min, max]".into(),
         Kind::Count { .. } => "a whole number or a range [min, max] of them".into(),
+        Kind::OneOf(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+            format!("{}, no range", numbers.join(" or "))
+        }
         Kind::Choice(words) => format!("one of: {}", words.join(", ")),
         Kind::Text => "text".into(),
         Kind::Flag => "true or false".into(),
@@ -123,7 +134,9 @@ pub(super) fn from_plain(tree: &toml::Value, parameter: &Parameter) -> Option<Va
     let found = parameter.key.split('.').try_fold(tree, |node, part| node.get(part))?;
     Some(match (&parameter.kind, found) {
         (Kind::Number { .. }, toml::Value::Float(x)) => Value::number(*x),
-        (Kind::Count { .. }, toml::Value::Integer(n)) => Value::count(u64::try_from(*n).ok()?),
+        (Kind::Count { .. } | Kind::OneOf(_), toml::Value::Integer(n)) => {
+            Value::count(u64::try_from(*n).ok()?)
+        }
         (Kind::Choice(_) | Kind::Text, toml::Value::String(s)) => Value::Text(s.clone()),
         (Kind::Flag, toml::Value::Boolean(b)) => Value::Flag(*b),
         (Kind::Points, list) => Value::Points(list.clone().try_into().ok()?),

@@ -88,6 +88,10 @@ fn comment(parameter: &Parameter) -> String {
         Kind::Number { min, max, unit } => format!(" [{min} to {max} {unit}]"),
         Kind::Count { min, max, unit: "" } => format!(" [{min} to {max}]"),
         Kind::Count { min, max, unit } => format!(" [{min} to {max} {unit}]"),
+        Kind::OneOf(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
+            format!(" [{}]", numbers.join(" | "))
+        }
         Kind::Choice(words) => format!(" [{}]", words.join(" | ")),
         _ => String::new(),
     };

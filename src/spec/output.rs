@@ -131,7 +131,7 @@ parameters! {
         /// Whose names and packing the maps follow.
         profile: choice(Profile, Profile::Default),
         /// Bits of a channel, 8 or 16; heights and thickness always have 16, vein orders 8.
-        bits: count(8, 8..=16, "bit"),
+        bits: one_of(8, &[8, 16]),
         /// Whether every map comes with its smaller levels, in mips/: colour as a mean of light, coverage
         /// kept.
         mips: flag(false),
@@ -206,19 +206,19 @@ impl OutputSpec {
     /// [`OutputError`] with the word that means nothing.
     pub fn resolve(&self) -> Result<Output, OutputError> {
         let maps = match self.maps.trim() {
-            "default" => self.profile.maps().to_vec(),
+            word if is_default(word) => self.profile.maps().to_vec(),
             // Among others `default` stands for its words.
             words => {
                 let standard = self.profile.maps().iter().map(|map| map.word());
                 let standard = standard.collect::<Vec<_>>().join(",");
                 let spelt = words.split(',').map(|word| match word.trim() {
-                    "default" => &standard[..],
+                    word if is_default(word) => &standard[..],
                     word => word,
                 });
                 MapKind::list(&spelt.collect::<Vec<_>>().join(","))?
             }
         };
-        let formats = match self.formats.trim() {
+        let formats = match self.formats.trim().to_ascii_lowercase().as_str() {
             "none" => Vec::new(),
             "all" => FormatKind::ALL.to_vec(),
             words => words.split(',').map(format).collect::<Result<_, _>>()?,
@@ -263,6 +263,10 @@ impl OutputSpec {
         }
         Ok(joined)
     }
+}
+
+fn is_default(word: &str) -> bool {
+    word.eq_ignore_ascii_case("default")
 }
 
 fn format(word: &str) -> Result<FormatKind, OutputError> {

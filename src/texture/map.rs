@@ -234,7 +234,7 @@ impl MapKind {
     ///
     /// [`TextureError::Map`] with the word that names none.
     pub fn list(words: &str) -> Result<Vec<Self>, TextureError> {
-        match words.trim() {
+        match words.trim().to_ascii_lowercase().as_str() {
             "none" => return Ok(Vec::new()),
             "all" => return Ok(Self::ALL.to_vec()),
             _ => {}

@@ -1,5 +1,6 @@
 //! What editors and shells are given: the schema, completions, the manual; and clean streams.
 
+use regex_lite::Regex;
 use serde_json::Value;
 use venation::document::{Comments, schema};
 use venation::presets::PRESETS;
@@ -39,6 +40,10 @@ fn problem(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<Stri
         && x > max
     {
         return Some(format!("{at}: {x} is above {max}"));
+    }
+    if let (Some(pattern), Some(text)) = (schema["pattern"].as_str(), value.as_str()) {
+        let fits = Regex::new(pattern).expect("an expression").is_match(text);
+        return (!fits).then(|| format!("{at}: {text} is not as {pattern}"));
     }
     if let Some(items) = value.as_array() {
         let count = items.len() as u64;
@@ -90,10 +95,55 @@ fn the_schema_takes_every_preset_and_refuses_what_the_program_refuses() {
         ("[growth]\ntype = \"isotropc\"\n", false),
         ("[margin]\nlength_mm = [1, 2, 3]\n", false),
         ("seed = -1\n", false),
+        ("[margin]\nlength_mm = \"wide\"\n", false),
+        ("vary = \"some\"\n", false),
+        ("[output]\nbits = 16\n", true),
+        ("[output]\nbits = 12\n", false),
+        ("[output]\nbits = [8, 16]\n", false),
+        ("[output]\nbits = \"8..16\"\n", false),
     ] {
         assert_eq!(check(text).is_none(), good, "{text}: {:?}", check(text));
         let document = venation::document::Document::parse(text, "leaf.toml");
         assert_eq!(document.is_ok(), good, "{text}");
+    }
+}
+
+#[test]
+fn the_schema_knows_which_texts_the_program_takes() {
+    let folder = fresh();
+    let (long, longer) = ("x".repeat(100), "x".repeat(101));
+    for (key, text, good) in [
+        ("name", "Acer_2-b", true),
+        ("name", &long, true),
+        ("name", &longer, false),
+        ("name", "", false),
+        ("name", "../up", false),
+        ("name", "a b", false),
+        ("name", "ahorn ä", false),
+        ("title", "any: text, at all", true),
+        ("output.maps", "default", true),
+        ("output.maps", "none", true),
+        ("output.maps", " All ", true),
+        ("output.maps", "BaseColor, ao,default", true),
+        ("output.maps", "none,basecolor", false),
+        ("output.maps", "basecolor,all", false),
+        ("output.maps", "basecolour", false),
+        ("output.maps", "basecolor,", false),
+        ("output.maps", "basecolor height", false),
+        ("output.maps", "", false),
+        ("output.formats", "obj", true),
+        ("output.formats", "GLB , svg,graphml", true),
+        ("output.formats", "None", true),
+        ("output.formats", "obj,none", false),
+        ("output.formats", "objx", false),
+        ("output.formats", "default", false),
+        ("output.formats", "", false),
+    ] {
+        let toml = format!("{key} = \"{text}\"\n");
+        assert_eq!(check(&toml).is_none(), good, "{toml}: {:?}", check(&toml));
+        std::fs::write(folder.path().join("leaf.toml"), &toml).unwrap();
+        let (code, _, message) = run(folder.path(), &["generate", "leaf.toml", "-n"]);
+        assert_eq!(code, if good { 0 } else { 2 }, "{toml}: {message}");
     }
 }
 

@@ -20,7 +20,7 @@ use super::leaf_args::{self, LeafArgs};
 use super::output_args::OutputArgs;
 use super::progress::{Counter, ProgressWord};
 use super::run_args::RunArgs;
-use super::{Context, Failure, seeds};
+use super::{Context, Failure, numbers, seeds};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -37,12 +37,12 @@ pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
     /// Seeds of the leaves, as 1-3,5,7-20:2.
-    #[arg(long, value_name = "LIST", default_value = "1-16")]
+    #[arg(long, value_name = "LIST", default_value = "1-16", allow_hyphen_values = true)]
     seeds: String,
     #[command(flatten)]
     output: OutputArgs,
     /// Pixels that stay free between leaves [default: a 256th of the side].
-    #[arg(long, value_name = "PX")]
+    #[arg(long, value_name = "PX", value_parser = numbers::whole::<usize, 0, { u64::MAX }>)]
     padding: Option<usize>,
     /// Folder to write into [default: the leaf's name and _atlas].
     #[arg(short, long, value_name = "DIR")]

@@ -16,7 +16,7 @@ use venation::presets;
 use venation::seed::Seed;
 use venation::veins::Algorithm;
 
-use super::Failure;
+use super::{Failure, numbers};
 use table::Line;
 
 /// Time the growth of veins on a standard leaf, a workload of your own or the tables of Foster's
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RANGE", default_value = "standard", conflicts_with = "suite")]
     attraction: Attraction,
     /// Threads to grow on; what grows is the same.
-    #[arg(long, short = 't', value_name = "N", default_value_t = 1)]
+    #[arg(long, short = 't', value_name = "N", default_value_t = 1, value_parser = numbers::threads)]
     threads: usize,
     /// Also time a program on the same sources: called as PATH FOLDER N RUNS, it reads the sources
     /// from FOLDER/auxin_N.csv, in lengths of the blade, and prints a line of JSON with `cpu` for each
@@ -56,7 +56,7 @@ pub(crate) struct Args {
           value_parser = clap::value_parser!(u32).range(1..=1000))]
     runs: u32,
     /// Seed of the darts on the standard leaf.
-    #[arg(long, default_value_t = 42)]
+    #[arg(long, default_value_t = 42, value_parser = numbers::seed)]
     seed: u64,
     /// Also write the measures to FILE as JSON.
     #[arg(long, value_name = "FILE")]

@@ -24,7 +24,7 @@ use venation::veins::metrics::VeinMetrics;
 use venation::veins::metrics::hierarchy::Hierarchy;
 
 use super::leaf_args::{self, LeafArgs};
-use super::{Context, Failure, seeds};
+use super::{Context, Failure, numbers, seeds};
 use cases::{By, Case};
 use trails::Seen;
 
@@ -54,10 +54,10 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value = "growth")]
     by: By,
     /// Seed of the leaf shown [default: the file's, else 1].
-    #[arg(long, value_name = "N", conflicts_with = "seeds")]
+    #[arg(long, value_name = "N", conflicts_with = "seeds", value_parser = numbers::seed)]
     seed: Option<u64>,
     /// Seeds to measure; the picture shows the first, --by seed all of them [default with it: 1-12].
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     seeds: Option<String>,
     /// The picture to write (PNG).
     #[arg(short, long, value_name = "FILE.png", required_unless_present_any = ["csv", "json"])]
@@ -81,6 +81,17 @@ pub(crate) struct Args {
 }
 
 impl Args {
+    /// Refuses a picture under the ending of another kind, and a folder of them under that of any.
+    fn check(&self) -> Result<(), Failure> {
+        let Some(out) = &self.out else { return Ok(()) };
+        match self.frames {
+            None => super::png_only("-o", out),
+            Some(_) if season::is_animation(out) => Ok(()),
+            Some(_) if super::is_picture(out) => super::png_only("-o", out),
+            Some(_) => Ok(()),
+        }
+    }
+
     /// The sheet and its table.
     fn written(&self) -> impl Iterator<Item = &PathBuf> {
         self.out.iter().chain(&self.csv)
@@ -99,6 +110,7 @@ struct Cell {
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
+    args.check()?;
     let mut document = args.leaf.document(context)?;
     // Laid veins and closed nets look alike under every growth: leave the whole pattern to it, as in
     // the papers, unless told otherwise.

@@ -160,6 +160,13 @@ impl Args {
             self.length_mm.and_then(|length| outside("--length-mm", length, 1.0, 2000.0)),
             self.px_per_mm.and_then(|scale| outside("--px-per-mm", scale, 1e-3, 1e6)),
         ];
+        if let Some(out) = self.out.as_ref().filter(|out| super::is_picture(out)) {
+            let problem = "leaves are written as .toml, or into a folder; --overlay draws them";
+            return Err(Failure::Input(format!("-o: {}: {problem}", out.display())));
+        }
+        if let Some(sheet) = &self.sheet {
+            super::png_only("--sheet", sheet)?;
+        }
         wrong.into_iter().flatten().next().map_or(Ok(()), Err)
     }
 

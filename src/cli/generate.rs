@@ -18,7 +18,7 @@ use super::leaf_args::LeafArgs;
 use super::output_args::OutputArgs;
 use super::progress::{Counter, ProgressWord};
 use super::run_args::RunArgs;
-use super::{Context, Failure, seeds};
+use super::{Context, Failure, numbers, seeds};
 use job::Job;
 use making::{Canvases, make};
 
@@ -47,13 +47,13 @@ pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
     /// Seed of one leaf [default: the file's, else 1].
-    #[arg(long, value_name = "N", conflicts_with = "seeds")]
+    #[arg(long, value_name = "N", conflicts_with = "seeds", value_parser = numbers::seed)]
     seed: Option<u64>,
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     seeds: Option<String>,
     /// Make only the leaves of shard I of N; count from 0 or from 1.
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse, allow_hyphen_values = true)]
     shard: Option<Shard>,
     #[command(flatten)]
     output: OutputArgs,
@@ -239,14 +239,6 @@ fn plan(
 }
 
 pub(super) fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    /// Threads beyond any machine's take minutes to start and make nothing faster.
-    const MOST: usize = 1024;
-    if threads == Some(0) {
-        return Err(Failure::Input("--threads: 0 threads make no leaf; give 1 or more".into()));
-    }
-    if let Some(threads) = threads.filter(|&threads| threads > MOST) {
-        return Err(Failure::Input(format!("--threads: {threads} is more than {MOST}")));
-    }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
         .build()

@@ -13,6 +13,7 @@ mod inspect;
 mod leaf_args;
 mod merge;
 mod morph;
+mod numbers;
 mod output_args;
 mod presets;
 mod progress;
@@ -20,10 +21,12 @@ mod run_args;
 mod seeds;
 mod shell;
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 pub(crate) use failure::Failure;
 use venation::io::write::{Overwrite, collisions, write_files};
 
@@ -117,8 +120,14 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub(crate) fn run() -> Result<(), Failure> {
-    let cli = match Cli::try_parse() {
+    let command = numbers::negative_too(Cli::command());
+    let parsed = command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = match parsed {
         Ok(cli) => cli,
+        // clap does not say which.
+        Err(error) if error.kind() == ErrorKind::InvalidUtf8 => {
+            return Err(Failure::Input(unreadable(std::env::args_os())));
+        }
         Err(error) => {
             // Help and version are data; mistakes are one line and code 2.
             if !error.use_stderr() {
@@ -158,6 +167,12 @@ fn refuse_existing<'a>(
     force: bool,
 ) -> Result<(), Failure> {
     let paths: Vec<_> = paths.into_iter().collect();
+    // Files are written by their names as text: another one would be made.
+    let unnamed = |path: &&&PathBuf| path.file_name().is_some_and(|name| name.to_str().is_none());
+    if let Some(path) = paths.iter().find(unnamed) {
+        let problem = format!("{}: the name is not UTF-8 text; give another", path.display());
+        return Err(Failure::Input(problem));
+    }
     let twice = paths.iter().enumerate().find(|(i, path)| paths[..*i].contains(path));
     if let Some((_, path)) = twice {
         let problem = format!("{}: two outputs cannot be one file; name another", path.display());
@@ -189,6 +204,28 @@ fn spare_inputs<'a>(
     }
 }
 
+/// Refuses to write a PNG under the ending of another kind of file.
+fn png_only(flag: &str, path: &Path) -> Result<(), Failure> {
+    match path.extension() {
+        Some(ending) if !ending.eq_ignore_ascii_case("png") => {
+            let (named, png) = (path.display(), path.with_extension("png"));
+            let problem = format!("{flag}: {named}: a PNG is written; call it {}", png.display());
+            Err(Failure::Input(problem))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether a name ends like that of a picture or a film.
+fn is_picture(path: &Path) -> bool {
+    const ENDINGS: [&str; 17] = [
+        "png", "apng", "jpg", "jpeg", "gif", "webp", "avif", "bmp", "tif", "tiff", "tga", "exr",
+        "svg", "pdf", "mp4", "mov", "webm",
+    ];
+    let ending = path.extension();
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
 /// Whether something is at a path, be it a link to nowhere.
 fn is_there(path: &Path) -> bool {
     let (folder, name) = parted(path);
@@ -205,6 +242,16 @@ fn save(path: &Path, bytes: Vec<u8>) -> Result<(), Failure> {
 fn parted(path: &Path) -> (&Path, String) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     (path.parent().unwrap_or(Path::new("")), name)
+}
+
+/// Which arguments are no text where only text will do.
+fn unreadable(arguments: impl Iterator<Item = OsString>) -> String {
+    let wrong = arguments.filter(|argument| argument.to_str().is_none());
+    let wrong: Vec<String> = wrong.map(|text| format!("`{}`", text.to_string_lossy())).collect();
+    format!(
+        "{}: not UTF-8 text; give a name that is (folders and pictures may have any)",
+        wrong.join(", ")
+    )
 }
 
 /// clap's message in one line: what is wrong and its tip, without usage.

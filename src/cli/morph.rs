@@ -21,7 +21,7 @@ use venation::veins::guides::carry::CarriedGuides;
 
 use super::leaf_args::{self, read_document};
 use super::progress::Bar;
-use super::{Context, Failure};
+use super::{Context, Failure, numbers};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LEAF:WEIGHT")]
     via: Vec<String>,
     /// How many frames, both ends included.
-    #[arg(long, value_name = "N", default_value = "24")]
+    #[arg(long, value_name = "N", default_value = "24", value_parser = numbers::whole::<usize, 2, MOST_FRAMES>)]
     frames: usize,
     /// Grow the veins of every frame and paint it.
     #[arg(long)]
@@ -60,13 +60,13 @@ pub(crate) struct Args {
     #[arg(long)]
     own_veins: bool,
     /// Seed of all frames [default: FROM's, else 1].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = numbers::seed)]
     seed: Option<u64>,
     /// Side of the square pictures, in pixels: 16 to 4096.
-    #[arg(long, value_name = "PX", default_value = "512")]
+    #[arg(long, value_name = "PX", default_value = "512", value_parser = numbers::whole::<u64, 16, LARGEST_PX>)]
     size: u64,
     /// Frames a second of the animation.
-    #[arg(long, value_name = "N", default_value = "24")]
+    #[arg(long, value_name = "N", default_value = "24", value_parser = numbers::whole::<u16, 1, 65_535>)]
     fps: u16,
     /// Set any key of all leaves, as in `generate`.
     #[arg(long, value_name = "key=value", allow_hyphen_values = true)]
@@ -83,7 +83,7 @@ pub(crate) struct Args {
 }
 
 /// Frames beyond this fit in no memory and no film.
-const MOST_FRAMES: usize = 10_000;
+const MOST_FRAMES: u64 = 10_000;
 
 /// The largest frame (pixels): all of an animation are held at once.
 const LARGEST_PX: u64 = 4096;
@@ -104,16 +104,6 @@ struct Frame {
 }
 
 pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure> {
-    if !(2..=MOST_FRAMES).contains(&args.frames) {
-        let problem = format!("--frames: {} is outside 2 to {MOST_FRAMES}", args.frames);
-        return Err(Failure::Input(problem));
-    }
-    if !(16..=LARGEST_PX).contains(&args.size) {
-        return Err(Failure::Input(format!("--size: {} is outside 16 to {LARGEST_PX}", args.size)));
-    }
-    if args.fps == 0 {
-        return Err(Failure::Input("--fps: 0 frames a second never end; give 1 or more".into()));
-    }
     let (leaves, weights, seed) = leaves(args)?;
     let out = args.out.clone().unwrap_or_else(|| {
         PathBuf::from(format!("{}-{}", leaves[0].name, leaves[leaves.len() - 1].name))

@@ -17,7 +17,7 @@ pub(crate) struct OutputArgs {
     profile: Option<String>,
     /// Bits of a channel, 8 or 16 [default: the file's, else 8; heights and thickness always have 16].
     #[arg(long, value_name = "N")]
-    bits: Option<u64>,
+    bits: Option<i64>,
     /// Write the smaller levels of every map too, in mips/: edges stay green, coverage stays as it is.
     #[arg(long)]
     mips: bool,

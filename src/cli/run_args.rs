@@ -2,10 +2,12 @@
 
 use venation::io::write::Overwrite;
 
+use super::numbers;
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct RunArgs {
     /// Threads to use; the bytes are the same for any number [default: all processors].
-    #[arg(short, long, value_name = "N")]
+    #[arg(short, long, value_name = "N", value_parser = numbers::threads)]
     pub(crate) threads: Option<usize>,
     /// Report on stdout as one JSON document.
     #[arg(long)]

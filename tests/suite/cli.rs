@@ -151,78 +151,6 @@ fn given_sources_are_all_the_sources_there_are() {
 }
 
 #[test]
-fn mistakes_are_one_line_with_code_2_and_leave_nothing() {
-    let folder = fresh();
-    std::fs::write(folder.path().join("file"), "").unwrap();
-    std::fs::write(folder.path().join("bad.toml"), "[veins]\nkill_distanse_mm = 1\n").unwrap();
-    std::fs::write(folder.path().join("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
-    std::fs::write(folder.path().join("bits.toml"), "name = 'x'\n[output]\nbits = 12\n").unwrap();
-    std::fs::write(folder.path().join("maps.toml"), "[output]\nmaps = 'basecolour'\n").unwrap();
-    std::fs::write(folder.path().join("name.toml"), "\nname = '../up'\n").unwrap();
-    let cases: &[(&[&str], &str)] = &[
-        (&["generate", "beach"], "did you mean `beech`"),
-        (&["generate", "nowhere.toml"], "nowhere.toml"),
-        (&["generate", "bad.toml"], "bad.toml:2: unknown key `veins.kill_distanse_mm`"),
-        (&["generate", "binary.toml"], "not UTF-8"),
-        (&["generate", "bits.toml"], "bits.toml:3: output.bits = 12"),
-        (&["generate", "maps.toml"], "maps.toml:2: output.maps: `basecolour`"),
-        (&["atlas", "maps.toml"], "maps.toml:2: output.maps: `basecolour`"),
-        (&["generate", "name.toml"], "name.toml:2: name = `../up`"),
-        (&["generate", "beech", "--json", "--progress", "openjd"], "--progress openjd"),
-        (&["atlas", "beech", "--seeds", "1-9000", "--size", "512", "-n"], "9000 leaves do not fit"),
-        (&["atlas", "beech", "--padding", "18446744073709551615", "-n"], "smaller --padding"),
-        (&["compare", "beech", "--by", "season", "--seeds", "1-3", "-o", "s.png"], "--seeds"),
-        (
-            &["compare", "beech", "--by", "season", "--frames", "2", "-o", "s.png", "--csv", "s"],
-            "--csv: a film has no measures",
-        ),
-        (&["generate", "beech", "--set", "veins.scale=0.1"], "veins.scale = 0.1 makes veins."),
-        (&["generate", "."], "."),
-        (&["generate", "beech", "--set", "veins.kil_distance_mm=1"], "veins.kill_distance_mm"),
-        (&["generate", "beech", "--set", "veins.kill_distance_mm"], "is not key=value"),
-        (
-            &["generate", "beech", "--set", "colour.pigments.leaf.chlorophyl=3"],
-            "did you mean `colour.pigments.leaf.chlorophyll_ug_cm2`",
-        ),
-        (&["generate", "beech", "--set", "veins.kill_distance_mm=2..1"], "runs backwards"),
-        (&["generate", "beech", "--set", "veins.kill_distance_mm=nan"], "not a finite number"),
-        (&["generate", "beech", "--set", "veins.kill_distance_mm=0"], "outside 0.001 to 1000"),
-        (&["generate", "beech", "--size", "0"], "outside 16 to 16384"),
-        (&["generate", "beech", "--size", "90000"], "outside 16 to 16384"),
-        (&["generate", "beech", "--length-mm", "inf"], "not a finite number"),
-        (&["generate", "beech", "-t", "0"], "--threads"),
-        (&["generate", "beech", "--seeds", "3-1"], "--seeds: column 1"),
-        (&["generate", "beech", "--maps", "basecolour"], "basecolor"),
-        (&["generate", "beech", "--maps", "none,basecolor"], "`none` stands alone"),
-        (&["generate", "beech", "--maps", "basecolor,All"], "`All` stands alone"),
-        (&["generate", "beech", "--format", "none,obj"], "`none` stands alone"),
-        (&["generate", "beech", "--maps", "height,"], "one word between commas"),
-        (
-            &["generate", "beech", "--set", "output.bits=8..16"],
-            "--set: output.bits = 8..16: it takes 8 or 16, no range",
-        ),
-        (&["generate", "beech", "--bits", "9"], "--bits: output.bits = 9: it takes 8 or 16"),
-        (&["generate", "beech", "--format", "fbx"], "fbx"),
-        (&["generate", "beech", "--format", "gbl"], "did you mean `glb`"),
-        (&["generate", "beech", "--outline", "nothing.png"], "nothing.png"),
-        (&["generate", "beech", "--sources", "nothing.csv"], "nothing.csv"),
-        (&["generate", "beech", "--growth", "fast"], "fast"),
-        (&["generate", "beech", "-o", "file/below"], "file"),
-        (&["generate", "beech", "--set", "name=../up"], "name"),
-        (&["presets", "show", "beach"], "did you mean `beech`"),
-        (&["bench", "--auxins", "zero"], "zero"),
-        (&["bench", "--workload", "nothing.json"], "nothing.json"),
-        (&["frobnicate"], "frobnicate"),
-    ];
-    for (arguments, expected) in cases {
-        let message = fail(folder.path(), 2, arguments);
-        assert!(message.contains(expected), "{arguments:?}: {message}");
-    }
-    let left: Vec<_> = contents(folder.path()).into_keys().collect();
-    assert_eq!(left.len(), 6, "{left:?}");
-}
-
-#[test]
 fn leaves_of_metres_are_told_to_take_long() {
     let folder = fresh();
     let message =
@@ -350,26 +278,6 @@ fn bench_prints_a_table_and_the_exponent() {
 }
 
 #[test]
-fn messages_stay_on_one_line_and_send_the_terminal_no_codes() {
-    let folder = fresh();
-    for arguments in
-        [&["generate", "a\nb\u{1b}[31m"][..], &["generate", "beech", "--set", "name=a\nb"]]
-    {
-        let message = fail(folder.path(), 2, arguments);
-        assert_eq!(message.lines().count(), 1, "{message}");
-        assert!(!message.contains('\u{1b}'), "{message:?}");
-    }
-}
-
-#[test]
-fn more_threads_than_any_machine_has_are_refused() {
-    let folder = fresh();
-    let message = fail(folder.path(), 2, &small(&["generate", "beech", "-t", "100000"]));
-    assert!(message.contains("--threads: 100000") && message.contains("1024"), "{message}");
-    assert!(contents(folder.path()).is_empty());
-}
-
-#[test]
 fn a_leaf_that_grows_no_vein_is_a_leaf_all_the_same() {
     let folder = fresh();
     let bare = ["generate", "beech", "--set", "veins.guides.primary=none", "--maps", "basecolor"];
@@ -398,16 +306,4 @@ fn sources_that_play_no_part_are_told_of() {
     assert!(message.contains("veins.sources_mm") && message.contains("pattern"), "{message}");
     let (_, _, message) = run(folder.path(), &small(&[&leaf[..], &["p"]].concat()));
     assert!(!message.contains("no part"), "{message}");
-}
-
-#[test]
-fn two_outputs_are_not_written_into_one_file() {
-    let folder = fresh();
-    let bench = ["bench", "--auxins", "100", "--csv", "b", "--json", "b"];
-    let compare = small(&["compare", "lilac", "-o", "c.png", "--csv", "c.png"]);
-    for arguments in [&bench[..], &compare] {
-        let message = fail(folder.path(), 2, arguments);
-        assert!(message.contains("two outputs cannot be one file"), "{message}");
-    }
-    assert!(contents(folder.path()).is_empty());
 }

@@ -1,5 +1,6 @@
 //! The whole library and the program, from outside. One binary, so a small machine links once.
 
+mod arguments; // mistakes in arguments, and what is said of them
 mod batches; // many leaves: shards, killed runs, atlases, dry runs
 mod cli; // the command line as a person types it: messages, exit codes, files
 mod closed; // closed venation: loops that close, against the same reference

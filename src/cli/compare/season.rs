@@ -18,6 +18,12 @@ use venation::texture::pigment::StateSpec;
 
 use super::super::{Context, Failure, leaf_args, save};
 
+/// Whether a film is written into one file of this name, and not into a folder.
+pub(super) fn is_animation(out: &Path) -> bool {
+    let ending = out.extension();
+    ending.is_some_and(|end| ["png", "apng"].iter().any(|known| end.eq_ignore_ascii_case(known)))
+}
+
 /// States of a year: name, season, maturity.
 const YEAR: [(&str, f64, f64); 6] = [
     ("spring", 0.0, 0.15),
@@ -95,10 +101,7 @@ impl Year {
         let mut times = self.times("basecolor");
         let maturity = self.spec.state.maturity;
         let season = |i: usize| i as f64 / (frames - 1).max(1) as f64;
-        let animated = out
-            .extension()
-            .is_some_and(|end| ["png", "apng"].iter().any(|known| end.eq_ignore_ascii_case(known)));
-        if animated {
+        if is_animation(out) {
             super::super::refuse_existing([&out.to_path_buf()], force)?;
             if dry_run {
                 writeln!(context.stdout, "{}", out.display())?;

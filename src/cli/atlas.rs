@@ -8,6 +8,7 @@ use venation::geometry::packing;
 use venation::io::atlas::{AtlasFiles, AtlasLeaf, atlas_file_names, encode_atlas};
 use venation::io::write::{Overwrite, collisions, write_files};
 use venation::io::{self};
+use venation::margin;
 use venation::observer::Silent;
 use venation::pipeline::{self, Grown};
 use venation::seed::Seed;
@@ -32,7 +33,10 @@ Examples:
 All leaves have the same texels to the millimetre, so large ones stay larger. atlas.json has for each its
 rectangle and margin (with v from the bottom and from the top), the end of its petiole as pivot, its size
 in mm and its seed; leaves/ has its settings, from which `venation generate` makes it alone. The ground
-between the leaves is filled from the nearest one. The back is the mirrored sheet: u becomes 1 - u.")]
+between the leaves is filled from the nearest one. The back is the mirrored sheet: u becomes 1 - u.
+
+Leaves whose outlines fill more than the sheet are refused before any is grown, by --dry-run, too; whether
+others find room shows when they are packed, grown and measured.")]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
@@ -98,9 +102,13 @@ pub(crate) fn run(args: &Args, context: &mut Context<'_>) -> Result<(), Failure>
     if seeds.len().saturating_mul(least) > (size + padding).pow(2) {
         return Err(no_room(seeds.len(), size, padding));
     }
+    let pool = pool(args.run.threads)?;
+    if pool.install(|| is_crowded(&document, &seeds, size, padding))? {
+        return Err(no_room(seeds.len(), size, padding));
+    }
     let mut packed = None;
     if !args.run.dry_run {
-        let files = pool(args.run.threads)?.install(|| {
+        let files = pool.install(|| {
             let counter = Counter::new(ProgressWord::Auto, context.quiet, 2 * seeds.len());
             let ready: Vec<Ready> = seeds
                 .par_iter()
@@ -196,16 +204,46 @@ fn lay_out(ready: &[Ready], size: usize, padding: usize) -> Result<LayOut, Failu
     let most = (size as f64 / longest).min(16_384.0 / widest).min(size as f64 / area.sqrt());
     // From above, since a scale may fit where a smaller one does not.
     let best = (0..SCALES_TRIED).find_map(|i| try_at(most * SCALE_STEP.powi(i)));
-    // A leaf's own picture has 16 texels at least.
     let smallest = ready.iter().map(|leaf| leaf.side_mm).fold(f64::INFINITY, f64::min);
-    best.filter(|found| found.per_mm * smallest >= 17.0)
+    best.filter(|found| found.per_mm * smallest >= LEAST_PAINTED_PX)
         .ok_or_else(|| no_room(ready.len(), size, padding))
 }
+
+/// A leaf's own picture has 16 texels at least.
+const LEAST_PAINTED_PX: f64 = 17.0;
 
 /// What is covered of a leaf's own picture of 16 texels or more, at the least: nearly its side, and more than
 /// a line.
 const LEAST_SIDE_PX: usize = 8;
 const LEAST_WIDTH_PX: usize = 2;
+
+/// Whether the outlines alone, at the least scale that leaves can be painted at, would fill more than the
+/// sheet: known without growing anything.
+fn is_crowded(
+    document: &Document,
+    seeds: &[u64],
+    size: usize,
+    padding: usize,
+) -> Result<bool, Failure> {
+    let measured = |&seed: &u64| -> Result<([f64; 2], f64), Failure> {
+        let spec = leaf_args::resolve(document, seed)?;
+        let margin =
+            margin::build(&spec.margin, Seed(seed)).map_err(venation::error::Error::from)?;
+        let outline = margin.bounds().size();
+        // How far the stalk reaches is not known yet, but the most that it can.
+        let stalk = spec.petiole.length_mm + 2.0 * spec.petiole.width_mm;
+        let most = 1.1 * outline.max_element() + stalk;
+        // What has fallen off a leaf takes no room.
+        let taken = if spec.damage.is_none() { outline.to_array() } else { [0.0; 2] };
+        Ok((taken, most / (1.0 - 2.0 * spec.texture.gutter)))
+    };
+    let leaves: Vec<_> = seeds.par_iter().map(measured).collect::<Result<_, _>>()?;
+    let smallest = leaves.iter().map(|(_, side_mm)| *side_mm).fold(f64::INFINITY, f64::min);
+    let pixels = |mm: f64| mm * LEAST_PAINTED_PX / smallest + padding as f64;
+    let area: f64 =
+        leaves.iter().map(|([width, height], _)| pixels(*width) * pixels(*height)).sum();
+    Ok(area > ((size - padding) as f64).powi(2))
+}
 
 fn no_room(leaves: usize, size: usize, padding: usize) -> Failure {
     Failure::Input(format!(

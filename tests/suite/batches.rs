@@ -321,6 +321,14 @@ fn an_atlas_has_leaves_that_keep_apart_and_ground_that_is_filled() {
     let crowd = ["atlas", "aspen", "--seeds", "1-40", "--size", "128", "--padding", "20"];
     let message = fail(folder.path(), 2, &[&crowd[..], &["-o", "no"], FEW_VEINS].concat());
     assert!(message.contains("do not fit on 128 pixels"), "{message}");
+    // Of leaves that would fit as mere lines, the outlines tell.
+    let crowd =
+        ["atlas", "aspen", "--seeds", "1-24", "--size", "128", "--padding", "20", "-o", "no"];
+    let told =
+        |more: &[&'static str]| fail(folder.path(), 2, &[&crowd[..], FEW_VEINS, more].concat());
+    let message = told(&["--dry-run"]);
+    assert!(message.contains("24 leaves do not fit on 128 pixels"), "{message}");
+    assert_eq!(message, told(&[]));
 }
 
 #[test]

@@ -269,3 +269,28 @@ fn a_diamond_typed_by_hand_is_an_outline() {
     let highest = imported.polygon_mm.iter().map(|p| p[1]).fold(0.0, f64::max);
     assert!((highest - 80.0).abs() < 1e-6, "{highest}");
 }
+
+#[test]
+fn teeth_too_wide_for_a_blade_that_winds_are_told_with_what_would_do() {
+    let folder = crate::support::fresh();
+    // A band three wide that winds three times, a tenth of its width between the turns.
+    let place = |i: i32, out: f64| {
+        let angle = f64::from(i) / 200.0 * std::f64::consts::TAU;
+        let from_middle = 4.0 + 3.3 * f64::from(i) / 200.0 + out;
+        format!("{},{}\n", from_middle * angle.cos(), from_middle * angle.sin())
+    };
+    let inner = (0..=600).map(|i| place(i, 0.0));
+    let outline: String = inner.chain((0..=600).rev().map(|i| place(i, 3.0))).collect();
+    std::fs::write(folder.path().join("winds.csv"), outline).expect("the file");
+    let leaf = ["generate", "beech", "--outline", "winds.csv", "--maps", "none", "-o", "out"];
+    let leaf = crate::support::small(&leaf);
+    let message = crate::support::fail(folder.path(), 2, &leaf);
+    assert!(
+        message.contains("teeth as wide as these cannot follow a margin that winds"),
+        "{message}"
+    );
+    for advice in ["margin.teeth.count=100", "margin.teeth.type=none"] {
+        let advised = [&leaf[..], &["--set", advice, "--force"]].concat();
+        crate::support::succeed(folder.path(), &advised);
+    }
+}

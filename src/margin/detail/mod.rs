@@ -36,8 +36,10 @@ pub use place::{Tooth, ToothForm};
 use run::{Run, Span};
 pub use spec::{RoughnessSpec, SmallTeethSpec, TeethSpec, ToothType, WaveSpec};
 
-/// What can be changed about detail that cannot be repaired.
-const HINT: &str = "lower margin.teeth.depth, margin.waves.height or margin.roughness.height_mm";
+/// What can be changed about detail that cannot be repaired: drawn back to nothing, waves and roughness lie on
+/// the margin, but a tooth is straight where the margin winds.
+const HINT: &str = "teeth as wide as these cannot follow a margin that winds so: give more of them \
+                    (margin.teeth.count, margin.teeth.per_cm), or none (margin.teeth.type = \"none\")";
 
 /// Steps in which detail that touches something is drawn back, and by what share in each.
 const STEPS: usize = 24;

@@ -42,7 +42,7 @@ pub struct Traced {
 }
 
 /// Smaller pictures hold no leaf worth growing (px).
-pub(super) const MIN_SIDE: usize = 8;
+pub(crate) const MIN_SIDE: usize = 8;
 /// A leaf that covers more of the border than this is not a leaf on a background.
 const MOST_OF_BORDER: f64 = 0.10;
 /// The mean difference between leaf and background, of 255, below which it is noise.

@@ -271,6 +271,15 @@ fn a_diamond_typed_by_hand_is_an_outline() {
 }
 
 #[test]
+fn a_picture_too_thin_to_be_averaged_down_is_told_its_own_size() {
+    let folder = crate::support::fresh();
+    let path = folder.path().join("strip.png");
+    image::GrayImage::new(60_000, 10).save(&path).expect("the file");
+    let error = import(&path, &options()).expect_err("too thin").to_string();
+    assert!(error.contains("the picture is 60000 x 10 px; averaged down by 15"), "{error}");
+}
+
+#[test]
 fn teeth_too_wide_for_a_blade_that_winds_are_told_with_what_would_do() {
     let folder = crate::support::fresh();
     // A band three wide that winds three times, a tenth of its width between the turns.

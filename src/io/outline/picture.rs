@@ -12,7 +12,7 @@ use image::{DynamicImage, ImageDecoder};
 
 use super::OutlineProblem;
 use crate::io::jpeg;
-use crate::margin::silhouette::Picture;
+use crate::margin::silhouette::{MIN_SIDE, Picture};
 use crate::raster::Grid;
 
 /// Formats that are read.
@@ -72,6 +72,19 @@ pub(super) fn read(path: &Path, format: Format) -> Result<(Picture, Vec<String>)
     }
 }
 
+/// By what factor a picture of this size is averaged down, when something is left of it.
+fn reduction(width: u32, height: u32) -> Result<u32, OutlineProblem> {
+    let factor = width.max(height).div_ceil(MOST_SIDE);
+    let left = width.min(height) / factor;
+    if factor > 1 && (left as usize) < MIN_SIDE {
+        return Err(OutlineProblem::Content(format!(
+            "the picture is {width} x {height} px; averaged down by {factor}, to at most {MOST_SIDE} px a side, \
+             less than {MIN_SIDE} px are left across: cut off what is beside the leaf"
+        )));
+    }
+    Ok(factor)
+}
+
 fn reduction_note(width: u32, height: u32, factor: u32) -> Vec<String> {
     if factor == 1 {
         return Vec::new();
@@ -101,7 +114,7 @@ fn read_png(reader: impl BufRead + Seek) -> Result<(Picture, Vec<String>), Outli
     if u64::from(width) * u64::from(height) > MOST_PNG_PIXELS {
         return Err(too_large(width, height, MOST_PNG_PIXELS));
     }
-    let factor = width.max(height).div_ceil(MOST_SIDE);
+    let factor = reduction(width, height)?;
     if interlaced && factor > 1 {
         return Err(OutlineProblem::Content(format!(
             "the picture is {width} x {height} px and interlaced; above {MOST_SIDE} px save it \
@@ -219,7 +232,7 @@ fn read_jpeg(file: &File) -> Result<(Picture, Vec<String>), OutlineProblem> {
     let mut decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
     decoded.apply_orientation(orientation);
     let (wide, high) = (decoded.width(), decoded.height());
-    let factor = wide.max(high).div_ceil(MOST_SIDE);
+    let factor = reduction(wide, high)?;
     let channels = usize::from(decoded.color().channel_count());
     let samples = match decoded {
         DynamicImage::ImageLuma8(image) => image.into_raw(),

@@ -10,12 +10,43 @@ const MOST_POINTS: usize = 20_000_000;
 /// Coordinates beyond this lose the digits that matter in the arithmetic that follows.
 const MOST_COORDINATE: f64 = 1e15;
 
+/// A line that holds no point.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {problem}")]
+pub struct PointError {
+    /// Which line, from 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub problem: PointProblem,
+}
+
+/// What is wrong with a line; with it stands how it begins.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PointProblem {
+    /// A number stands alone.
+    #[error("\"{0}\" is one column; a point has x and y")]
+    OneColumn(String),
+    /// Something else than numbers.
+    #[error("\"{0}\" is not a pair of numbers")]
+    NoNumbers(String),
+    /// NaN or infinite.
+    #[error("\"{0}\" is not a pair of finite numbers")]
+    NotFinite(String),
+    /// A coordinate that would lose its digits.
+    #[error("\"{0}\" is beyond {MOST_COORDINATE:e}; use a smaller unit")]
+    TooFar(String),
+    /// More points than anybody means.
+    #[error("more than {MOST_POINTS} points")]
+    TooMany,
+}
+
 /// The points of a text.
 ///
 /// # Errors
 ///
-/// The line and what is wrong with it, in words.
-pub fn parse(text: &str) -> Result<Vec<[f64; 2]>, String> {
+/// [`PointError`] names the line and what is wrong with it.
+pub fn parse(text: &str) -> Result<Vec<[f64; 2]>, PointError> {
     let text = text.trim_start_matches('\u{feff}');
     let mut points = Vec::new();
     let mut heading_seen = false;
@@ -24,7 +55,7 @@ pub fn parse(text: &str) -> Result<Vec<[f64; 2]>, String> {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let problem = |what: String| Err(format!("line {}: {what}", number + 1));
+        let fail = |problem: PointProblem| Err(PointError { line: number + 1, problem });
         let numbers: Vec<Option<f64>> =
             fields(line).iter().take(2).map(|field| field.parse().ok()).collect();
         let [x, y] = match numbers[..] {
@@ -34,20 +65,17 @@ pub fn parse(text: &str) -> Result<Vec<[f64; 2]>, String> {
                 heading_seen = true;
                 continue;
             }
-            [_] => {
-                return problem(format!("\"{}\" is one column; a point has x and y", short(line)));
-            }
-            _ => return problem(format!("\"{}\" is not a pair of numbers", short(line))),
+            [_] => return fail(PointProblem::OneColumn(short(line))),
+            _ => return fail(PointProblem::NoNumbers(short(line))),
         };
         if !(x.is_finite() && y.is_finite()) {
-            return problem(format!("\"{}\" is not a pair of finite numbers", short(line)));
+            return fail(PointProblem::NotFinite(short(line)));
         }
         if x.abs().max(y.abs()) > MOST_COORDINATE {
-            let bound = format!("beyond {MOST_COORDINATE:e}; use a smaller unit");
-            return problem(format!("\"{}\" is {bound}", short(line)));
+            return fail(PointProblem::TooFar(short(line)));
         }
         if points.len() == MOST_POINTS {
-            return problem(format!("more than {MOST_POINTS} points"));
+            return fail(PointProblem::TooMany);
         }
         points.push([x, y]);
     }
@@ -69,7 +97,7 @@ fn short(line: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::parse;
+    use super::*;
 
     #[test]
     fn separators_headings_comments_and_marks() {
@@ -87,9 +115,14 @@ mod tests {
 
     #[test]
     fn mistakes_name_their_line() {
-        assert!(parse("1,2\nnan,3\n").unwrap_err().starts_with("line 2: "));
-        assert!(parse("1,2\n3\n").unwrap_err().contains("one column"));
-        assert!(parse("a,b\nc,d\n").unwrap_err().starts_with("line 2: "));
-        assert!(parse("1,1e300\n").unwrap_err().contains("beyond"));
+        let wrong = |text: &str| parse(text).unwrap_err();
+        let text = |text: &str| text.to_owned();
+        let problem = PointProblem::NotFinite(text("nan,3"));
+        assert_eq!(wrong("1,2\nnan,3\n"), PointError { line: 2, problem });
+        assert_eq!(wrong("1,2\n3\n").problem, PointProblem::OneColumn(text("3")));
+        let problem = PointProblem::NoNumbers(text("c,d"));
+        assert_eq!(wrong("a,b\nc,d\n"), PointError { line: 2, problem });
+        let told = wrong("1,1e300\n").to_string();
+        assert_eq!(told, "line 1: \"1,1e300\" is beyond 1e15; use a smaller unit");
     }
 }

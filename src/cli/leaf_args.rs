@@ -166,7 +166,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 
 fn read_sources(path: &Path) -> Result<Vec<[f64; 2]>, Failure> {
     let fail = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
-    let points = point_list::parse(&read_text(path)?).map_err(fail)?;
+    let points = point_list::parse(&read_text(path)?).map_err(|e| fail(e.to_string()))?;
     if points.is_empty() { Err(fail("no points".into())) } else { Ok(points) }
 }
 

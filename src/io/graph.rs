@@ -103,75 +103,148 @@ pub struct ReadGraph {
 /// Coordinates and radii beyond this (mm) are no leaf, and their squares would lose their digits.
 const MOST_MM: f64 = 1e6;
 
+/// Why a `_veins.json` is no vein graph, to stand after its name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GraphError {
+    /// Other JSON, or none.
+    #[error("is not a vein graph: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A format to come.
+    #[error("is version {0} of the format; this program reads 1")]
+    Version(u32),
+    /// Lengths in another unit.
+    #[error("has lengths in `{0}`; this program reads mm")]
+    Unit(String),
+    /// A point of the margin far from any leaf, or nowhere.
+    #[error("margin point {0} is beyond {MOST_MM} mm")]
+    MarginPoint(usize),
+    /// A margin without a blade.
+    #[error("margin encloses no area")]
+    NoArea,
+    /// A node that makes no sense.
+    #[error("node {index} {problem}")]
+    Node {
+        /// Its place in the list.
+        index: usize,
+        /// What is wrong with it.
+        problem: NodeProblem,
+    },
+    /// A join that makes no sense.
+    #[error("join {index} {problem}")]
+    Join {
+        /// Its place in the list.
+        index: usize,
+        /// What is wrong with it.
+        problem: JoinProblem,
+    },
+    /// Nodes, if any, but no edge.
+    #[error("has no veins")]
+    NoVeins,
+}
+
+/// What is wrong with a node.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NodeProblem {
+    /// It is not where its id says.
+    #[error("has the id {0}; ids count from 0")]
+    Id(NodeId),
+    /// It lies far from any leaf, or nowhere.
+    #[error("is beyond {MOST_MM} mm")]
+    TooFar,
+    /// Its vein has no width, or too much.
+    #[error("has the radius {0}")]
+    Radius(f64),
+    /// Its vein is of no order.
+    #[error("has the order 0; orders count from 1")]
+    Order,
+    /// It stands before its parent.
+    #[error("has the parent {0}; parents come first")]
+    Parent(NodeId),
+}
+
+/// What is wrong with a join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum JoinProblem {
+    /// A node that there is not, or twice the same.
+    #[error("of nodes {0} and {1} is none")]
+    Ends(NodeId, NodeId),
+    /// An edge that is there already.
+    #[error("repeats the edge from {0} to {1}")]
+    Repeated(NodeId, NodeId),
+}
+
 impl VeinDocument {
     /// Reads a `_veins.json`.
     ///
     /// # Errors
     ///
-    /// What is wrong with it, without its name.
-    pub fn from_json(text: &str) -> Result<Self, String> {
-        serde_json::from_str(text).map_err(|error| format!("is not a vein graph: {error}"))
+    /// [`GraphError::Json`].
+    pub fn from_json(text: &str) -> Result<Self, GraphError> {
+        Ok(serde_json::from_str(text)?)
     }
 
     /// The graph, all guarantees checked.
     ///
     /// # Errors
     ///
-    /// The first number or edge that makes no sense.
-    pub fn graph(&self) -> Result<ReadGraph, String> {
+    /// [`GraphError`] with the first number or edge that makes no sense.
+    pub fn graph(&self) -> Result<ReadGraph, GraphError> {
         if self.version != 1 {
-            return Err(format!("is version {} of the format; this program reads 1", self.version));
+            return Err(GraphError::Version(self.version));
         }
         if self.unit != "mm" {
-            return Err(format!("has lengths in `{}`; this program reads mm", self.unit));
+            return Err(GraphError::Unit(self.unit.clone()));
         }
         let sound = |value: f64| value.abs() <= MOST_MM;
         let outline: Vec<DVec2> = self.margin.iter().map(|&p| DVec2::from(p)).collect();
         if let Some(i) = outline.iter().position(|p| !sound(p.x) || !sound(p.y)) {
-            return Err(format!("margin point {i} is beyond {MOST_MM} mm"));
+            return Err(GraphError::MarginPoint(i));
         }
         if !outline.is_empty()
             && (outline.len() < 3 || polygon::signed_area(&outline).abs() <= f64::MIN_POSITIVE)
         {
-            return Err("margin encloses no area".into());
+            return Err(GraphError::NoArea);
         }
         let mut graph = VeinGraph::new();
         for (i, node) in self.nodes.iter().enumerate() {
+            let fail = |problem: NodeProblem| Err(GraphError::Node { index: i, problem });
             if node.id as usize != i {
-                return Err(format!("node {i} has the id {}; ids count from 0", node.id));
+                return fail(NodeProblem::Id(node.id));
             }
             if !sound(node.x) || !sound(node.y) {
-                return Err(format!("node {i} is beyond {MOST_MM} mm"));
+                return fail(NodeProblem::TooFar);
             }
             if !(node.radius > 0.0 && sound(node.radius)) {
-                return Err(format!("node {i} has the radius {}", node.radius));
+                return fail(NodeProblem::Radius(node.radius));
             }
             if node.order == 0 {
-                return Err(format!("node {i} has the order 0; orders count from 1"));
+                return fail(NodeProblem::Order);
             }
             let position = DVec2::new(node.x, node.y);
             match node.parent {
                 None => graph.add_root(position),
                 Some(parent) if (parent as usize) < i => graph.sprout(parent, position),
-                Some(parent) => {
-                    return Err(format!("node {i} has the parent {parent}; parents come first"));
-                }
+                Some(parent) => return fail(NodeProblem::Parent(parent)),
             };
         }
         let mut seen = HashSet::new();
         for (i, &[a, b]) in self.joins.iter().enumerate() {
+            let fail = |problem: JoinProblem| Err(GraphError::Join { index: i, problem });
             let count = graph.len() as NodeId;
             if a >= count || b >= count || a == b {
-                return Err(format!("join {i} of nodes {a} and {b} is none"));
+                return fail(JoinProblem::Ends(a, b));
             }
             let is_edge = graph.parent(a) == Some(b) || graph.parent(b) == Some(a);
             if is_edge || !seen.insert((a.min(b), a.max(b))) {
-                return Err(format!("join {i} repeats the edge from {a} to {b}"));
+                return fail(JoinProblem::Repeated(a, b));
             }
             graph.join(a, b);
         }
         if graph.edges().next().is_none() {
-            return Err("has no veins".into());
+            return Err(GraphError::NoVeins);
         }
         let radii = self.nodes.iter().map(|node| node.radius).collect();
         let orders = self.nodes.iter().map(|node| node.order).collect();

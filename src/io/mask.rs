@@ -27,6 +27,47 @@ const MOST_PIXELS: u64 = 160_000_000;
 /// JPEGs are decoded whole, at 3 bytes to the pixel.
 const MOST_DECODED_BYTES: u64 = 256 << 20;
 
+/// Why a file shows no veins, to stand after its name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaskError {
+    /// The system refused.
+    #[error("{0}")]
+    Read(#[from] std::io::Error),
+    /// Too short to be one.
+    #[error("is not a picture")]
+    NoPicture,
+    /// More than can be measured.
+    #[error(
+        "is {width} x {height} px; at most {MOST_SIDE} px a side and {} megapixels are measured: reduce it",
+        MOST_PIXELS / 1_000_000
+    )]
+    TooLarge {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// Rows that come in no order.
+    #[error("is interlaced; save it without interlacing")]
+    Interlaced,
+    /// A broken PNG.
+    #[error("is not a sound PNG picture: {0}")]
+    Png(#[from] png::DecodingError),
+    /// A PNG with fewer rows than it says.
+    #[error("is not a sound PNG picture: rows are missing")]
+    MissingRows,
+    /// A broken JPEG.
+    #[error("is not a sound JPEG picture: {0}")]
+    Jpeg(#[from] image::ImageError),
+    /// A JPEG that is too large or cut short.
+    #[error("{0}")]
+    JpegFile(String),
+    /// Neither veins nor ground.
+    #[error("has a single colour: no veins to measure")]
+    OneColour,
+}
+
 /// Whether a file begins as the pictures do that [`read`] reads.
 #[must_use]
 pub fn is_picture(head: &[u8]) -> bool {
@@ -37,12 +78,12 @@ pub fn is_picture(head: &[u8]) -> bool {
 ///
 /// # Errors
 ///
-/// What is wrong with it, without its name.
-pub fn read(path: &Path) -> Result<VeinMask, String> {
-    let mut file = File::open(path).map_err(|error| error.to_string())?;
+/// [`MaskError`] says what is wrong with it.
+pub fn read(path: &Path) -> Result<VeinMask, MaskError> {
+    let mut file = File::open(path)?;
     let mut head = [0; 3];
-    file.read_exact(&mut head).map_err(|_| "is not a picture".to_owned())?;
-    file.seek(SeekFrom::Start(0)).map_err(|error| error.to_string())?;
+    file.read_exact(&mut head).map_err(|_| MaskError::NoPicture)?;
+    file.seek(SeekFrom::Start(0))?;
     let white = if head == [0xff, 0xd8, 0xff] {
         read_jpeg(&file)?
     } else {
@@ -56,46 +97,41 @@ pub fn read(path: &Path) -> Result<VeinMask, String> {
     let dark_veins = 2 * bright > total;
     let veins = if dark_veins { white.map(|white| !white) } else { white };
     if !veins.values().contains(&true) {
-        return Err("has a single colour: no veins to measure".into());
+        return Err(MaskError::OneColour);
     }
     Ok(VeinMask { veins, dark_veins })
 }
 
-fn check_size(width: u32, height: u32) -> Result<(), String> {
+fn check_size(width: u32, height: u32) -> Result<(), MaskError> {
     let pixels = u64::from(width) * u64::from(height);
     if width.max(height) > MOST_SIDE || pixels > MOST_PIXELS {
-        let most = MOST_PIXELS / 1_000_000;
-        return Err(format!(
-            "is {width} x {height} px; at most {MOST_SIDE} px a side and {most} megapixels are \
-             measured: reduce it"
-        ));
+        return Err(MaskError::TooLarge { width, height });
     }
     Ok(())
 }
 
-fn read_png(reader: impl BufRead + Seek) -> Result<Grid<bool>, String> {
-    let broken = |error: png::DecodingError| format!("is not a sound PNG picture: {error}");
+fn read_png(reader: impl BufRead + Seek) -> Result<Grid<bool>, MaskError> {
     let mut decoder = png::Decoder::new_with_limits(reader, png::Limits { bytes: 256 << 20 });
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
     // The size first: nothing is allocated for what the header claims.
-    let info = decoder.read_header_info().map_err(broken)?;
+    let info = decoder.read_header_info()?;
     let (width, height, interlaced) = (info.width, info.height, info.interlaced);
     check_size(width, height)?;
     if interlaced {
-        return Err("is interlaced; save it without interlacing".into());
+        return Err(MaskError::Interlaced);
     }
     decoder.set_transformations(
         png::Transformations::normalize_to_color8() | png::Transformations::ALPHA,
     );
-    let mut reader = decoder.read_info().map_err(broken)?;
+    let mut reader = decoder.read_info()?;
     let channels = reader.output_color_type().0.samples();
     let mut values = Vec::new();
-    while let Some(row) = reader.next_row().map_err(broken)? {
+    while let Some(row) = reader.next_row()? {
         values.extend(row.data().chunks_exact(channels).map(is_white));
     }
     if values.len() != width as usize * height as usize {
-        return Err("is not a sound PNG picture: rows are missing".into());
+        return Err(MaskError::MissingRows);
     }
     Ok(Grid::from_values(width as usize, height as usize, values))
 }
@@ -110,11 +146,10 @@ fn is_white(samples: &[u8]) -> bool {
     u64::from(grey) * u64::from(alpha) > 127 * 1000 * 255
 }
 
-fn read_jpeg(file: &File) -> Result<Grid<bool>, String> {
-    let broken = |error: image::ImageError| format!("is not a sound JPEG picture: {error}");
+fn read_jpeg(file: &File) -> Result<Grid<bool>, MaskError> {
     let bytes = jpeg::read(file).map_err(|problem| match problem {
-        jpeg::Problem::Read(error) => error.to_string(),
-        jpeg::Problem::Content(what) => what,
+        jpeg::Problem::Read(error) => MaskError::Read(error),
+        jpeg::Problem::Content(what) => MaskError::JpegFile(what),
     })?;
     let mut reader = image::ImageReader::new(Cursor::new(bytes));
     reader.set_format(image::ImageFormat::Jpeg);
@@ -123,7 +158,7 @@ fn read_jpeg(file: &File) -> Result<Grid<bool>, String> {
     limits.max_image_height = Some(MOST_SIDE);
     limits.max_alloc = Some(MOST_DECODED_BYTES);
     reader.limits(limits);
-    let picture = reader.decode().map_err(broken)?;
+    let picture = reader.decode()?;
     check_size(picture.width(), picture.height())?;
     let grey = picture.into_luma8();
     let (width, height) = (grey.width() as usize, grey.height() as usize);

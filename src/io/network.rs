@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::graph::VeinDocument;
-use super::mask;
+use super::graph::{GraphError, VeinDocument};
+use super::mask::{self, MaskError};
 use crate::veins::metrics::measures::Unit;
 use crate::veins::metrics::{Network, picture};
 
@@ -31,7 +31,43 @@ pub struct NetworkError {
     /// The file or folder.
     pub path: PathBuf,
     /// What is wrong.
-    pub problem: String,
+    pub problem: NetworkProblem,
+}
+
+/// What is wrong with a file or folder, to stand after its name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NetworkProblem {
+    /// The system refused.
+    #[error("{0}")]
+    Read(#[from] std::io::Error),
+    /// A folder without a vein graph.
+    #[error("holds no NAME{GRAPH_ENDING}; generate with --format json")]
+    NoGraph,
+    /// A folder with several.
+    #[error("holds {0} files *{GRAPH_ENDING}; name one")]
+    ManyGraphs(usize),
+    /// Nothing in it.
+    #[error("is empty")]
+    Empty,
+    /// Called a picture, and none.
+    #[error("is not a PNG or JPEG picture, whatever its name says")]
+    NoPicture,
+    /// More text than can be read.
+    #[error("is larger than {} megabytes", MOST_BYTES >> 20)]
+    TooLarge,
+    /// Bytes of another kind.
+    #[error("is neither a vein graph (JSON) nor a picture (PNG, JPEG)")]
+    Unknown,
+    /// A picture of something else.
+    #[error("has no lines that could be veins")]
+    NoLines,
+    /// A picture that cannot be measured.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// A vein graph that makes no sense.
+    #[error(transparent)]
+    Graph(#[from] GraphError),
 }
 
 /// What the files of vein graphs end in.
@@ -53,16 +89,19 @@ pub fn is_picture(path: &Path) -> bool {
 ///
 /// [`NetworkError`] names the file and what is wrong with it.
 pub fn read(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, NetworkError> {
-    let error = |path: &Path, problem: String| NetworkError { path: path.to_owned(), problem };
-    let path = if path.is_dir() {
-        graph_in(path).map_err(|problem| error(path, problem))?
-    } else {
-        path.to_owned()
+    let fail = |path: &Path, problem| NetworkError { path: path.to_owned(), problem };
+    let file = match path.is_dir() {
+        true => graph_in(path).map_err(|problem| fail(path, problem))?,
+        false => path.to_owned(),
     };
-    let problem = |problem: String| error(&path, problem);
-    let head = head(&path).map_err(|e| problem(e.to_string()))?;
+    read_file(&file, pixels_per_mm).map_err(|problem| fail(&file, problem))
+}
+
+fn read_file(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, NetworkProblem> {
+    let head = head(path)?;
+    let path = path.to_owned();
     if mask::is_picture(&head) {
-        let mask = mask::read(&path).map_err(problem)?;
+        let mask = mask::read(&path)?;
         let pixel = pixels_per_mm.map_or(1.0, |per_mm| 1.0 / per_mm);
         let unit = if pixels_per_mm.is_some() { Unit::Millimetre } else { Unit::Pixel };
         let mut notes = Vec::new();
@@ -71,20 +110,18 @@ pub fn read(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, Netw
         }
         let network = picture::network(mask.veins, pixel);
         if network.segments().is_empty() {
-            return Err(problem("has no lines that could be veins".into()));
+            return Err(NetworkProblem::NoLines);
         }
         return Ok(ReadNetwork { network, unit, path, pixel: Some(pixel), notes });
     }
     if head.is_empty() {
-        return Err(problem("is empty".into()));
+        return Err(NetworkProblem::Empty);
     }
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     if matches!(&*ending, "png" | "jpg" | "jpeg") {
-        return Err(problem("is not a PNG or JPEG picture, whatever its name says".into()));
+        return Err(NetworkProblem::NoPicture);
     }
-    let text = text(&path).map_err(problem)?;
-    let document = VeinDocument::from_json(&text).map_err(problem)?;
-    let read = document.graph().map_err(problem)?;
+    let read = VeinDocument::from_json(&text(&path)?)?.graph()?;
     let network = Network::of_graph(&read.graph, &read.radii, &read.orders, &read.outline);
     let mut notes = Vec::new();
     if read.outline.is_empty() {
@@ -93,8 +130,8 @@ pub fn read(path: &Path, pixels_per_mm: Option<f64>) -> Result<ReadNetwork, Netw
     Ok(ReadNetwork { network, unit: Unit::Millimetre, path, pixel: None, notes })
 }
 
-fn graph_in(folder: &Path) -> Result<PathBuf, String> {
-    let entries = fs::read_dir(folder).map_err(|error| error.to_string())?;
+fn graph_in(folder: &Path) -> Result<PathBuf, NetworkProblem> {
+    let entries = fs::read_dir(folder)?;
     let mut graphs: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
         .filter(|path| path.to_string_lossy().ends_with(GRAPH_ENDING))
@@ -102,8 +139,8 @@ fn graph_in(folder: &Path) -> Result<PathBuf, String> {
     graphs.sort();
     match graphs.len() {
         1 => Ok(graphs.remove(0)),
-        0 => Err(format!("holds no NAME{GRAPH_ENDING}; generate with --format json")),
-        n => Err(format!("holds {n} files *{GRAPH_ENDING}; name one")),
+        0 => Err(NetworkProblem::NoGraph),
+        n => Err(NetworkProblem::ManyGraphs(n)),
     }
 }
 
@@ -113,18 +150,16 @@ fn head(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(head)
 }
 
-fn text(path: &Path) -> Result<String, String> {
+fn text(path: &Path) -> Result<String, NetworkProblem> {
     let mut text = String::new();
-    let file = File::open(path).map_err(|error| error.to_string())?;
+    let file = File::open(path)?;
     let read = file.take(MOST_BYTES + 1).read_to_string(&mut text);
     match read {
-        Ok(bytes) if bytes as u64 > MOST_BYTES => {
-            Err(format!("is larger than {} megabytes", MOST_BYTES >> 20))
-        }
+        Ok(bytes) if bytes as u64 > MOST_BYTES => Err(NetworkProblem::TooLarge),
         Ok(_) => Ok(text),
         Err(error) if error.kind() == std::io::ErrorKind::InvalidData => {
-            Err("is neither a vein graph (JSON) nor a picture (PNG, JPEG)".into())
+            Err(NetworkProblem::Unknown)
         }
-        Err(error) => Err(error.to_string()),
+        Err(error) => Err(error.into()),
     }
 }

@@ -19,6 +19,7 @@ use crate::margin::placement::{self, Found, Placed};
 use crate::margin::silhouette::{self, Picture, Traced};
 use crate::margin::{self, Margin, MarginError, MarginKind, MarginSpec, sketch, tidy};
 use crate::parameter::words;
+use crate::point_list::PointError;
 use crate::seed::Seed;
 
 words! {
@@ -117,6 +118,9 @@ pub enum OutlineProblem {
     /// It is broken, of another kind, or too large.
     #[error("{0}")]
     Content(String),
+    /// A line of it is no point.
+    #[error(transparent)]
+    Point(#[from] PointError),
     /// It is what it should be but shows no usable leaf.
     #[error("{0}")]
     Leaf(#[from] MarginError),

@@ -12,7 +12,7 @@ const MOST_POINTS: usize = 500_000;
 
 /// The polygon and what was dropped from it.
 pub(super) fn outline(text: &str) -> Result<(Vec<DVec2>, Vec<String>), OutlineProblem> {
-    let given = point_list::parse(text).map_err(OutlineProblem::Content)?;
+    let given = point_list::parse(text)?;
     if given.len() > MOST_POINTS {
         let problem = format!("has more than {MOST_POINTS} points; simplify the outline");
         return Err(OutlineProblem::Content(problem));

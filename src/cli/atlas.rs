@@ -41,7 +41,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
     /// Seeds of the leaves, as 1-3,5,7-20:2.
-    #[arg(long, value_name = "LIST", default_value = "1-16", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST", default_value = "1-16")]
     seeds: String,
     #[command(flatten)]
     output: OutputArgs,

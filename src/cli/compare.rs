@@ -57,7 +57,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "seeds", value_parser = numbers::seed)]
     seed: Option<u64>,
     /// Seeds to measure; the picture shows the first, --by seed all of them [default with it: 1-12].
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
     /// The picture to write (PNG).
     #[arg(short, long, value_name = "FILE.png", required_unless_present_any = ["csv", "json"])]

@@ -50,10 +50,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "seeds", value_parser = numbers::seed)]
     seed: Option<u64>,
     /// Seeds of many leaves, as 1-3,5,7-20:2; each gets a folder DIR/NAME_s0003.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     seeds: Option<String>,
     /// Make only the leaves of shard I of N; count from 0 or from 1.
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse, allow_hyphen_values = true)]
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
     #[command(flatten)]
     output: OutputArgs,

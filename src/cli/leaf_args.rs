@@ -91,7 +91,7 @@ pub(crate) struct LeafArgs {
     shape: Option<String>,
     /// Length of the blade from base to apex, in mm; a range, as 60..90, draws one for each leaf
     /// [default: the preset's].
-    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    #[arg(long, value_name = "L")]
     length_mm: Option<String>,
     /// How the blade grows.
     #[arg(long, value_name = "TYPE", value_enum)]
@@ -101,13 +101,13 @@ pub(crate) struct LeafArgs {
     pub(crate) size: Option<i64>,
     /// 0 summer, 0.5 autumn colour, 1 litter; a range, as 0.3..0.7, draws one for each leaf
     /// [default: the preset's, 0].
-    #[arg(long, value_name = "0 to 1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "0 to 1")]
     season: Option<String>,
     /// 0 just unfolded, 1 mature, or a range [default: the preset's, 1].
-    #[arg(long, value_name = "0 to 1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "0 to 1")]
     maturity: Option<String>,
     /// 1 well, less sick, or a range [default: the preset's, 1].
-    #[arg(long, value_name = "0 to 1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "0 to 1")]
     health: Option<String>,
     /// What has happened to it, as holes=0.2,margin_bites=0.1,skeletonise=0.1 (shares of the blade),
     /// mines, spots, scorch, tears (0 to 1).
@@ -117,7 +117,7 @@ pub(crate) struct LeafArgs {
     #[arg(long, value_name = "N")]
     damage_seed: Option<i64>,
     /// Perturb every number of the margin by up to so many percent, on top of the preset's ranges.
-    #[arg(long, value_name = "PERCENT%", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PERCENT%")]
     vary: Option<String>,
     /// Auxin sources from this CSV (x,y in mm of the mature leaf: base 0,0, apex on +y) instead of
     /// darts; they make the whole pattern: open venation without guides or smoothing, unless --set.

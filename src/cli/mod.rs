@@ -26,7 +26,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 pub(crate) use failure::Failure;
 use venation::io::write::{Overwrite, collisions, write_files};
 
@@ -120,9 +120,7 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub(crate) fn run() -> Result<(), Failure> {
-    let command = numbers::negative_too(Cli::command());
-    let parsed = command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
-    let cli = match parsed {
+    let cli = match Cli::try_parse_from(numbers::joined(std::env::args_os())) {
         Ok(cli) => cli,
         // clap does not say which.
         Err(error) if error.kind() == ErrorKind::InvalidUtf8 => {

@@ -112,6 +112,11 @@ fn negative_numbers_are_told_their_limits() {
         (&["fit", "x.png", "--vary", "-3"], "--vary: -3 is not between 0 and 100"),
         (&["fit", "x.png", "--px-per-mm", "-3"], "--px-per-mm: -3 is not between"),
         (&["inspect", "x.png", "--tolerance", "-1"], "--tolerance: -1 is not between"),
+        (&["generate", "beech", "--mips", "-1"], "--mips"),
+        (
+            &["generate", "beech", "--length-mm", "--size", "64"],
+            "a value is required for '--length-mm",
+        ),
         (&["bench", "--auxins", "-1"], "1..=10000000"),
         (&["bench", "--runs", "-1"], "1..=1000"),
     ];

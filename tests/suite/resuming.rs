@@ -160,9 +160,12 @@ fn files_of_an_older_leaf_are_not_taken_for_those_of_the_new_one() {
     assert!(height() != old);
     let out = folder.path().join("out");
     assert_eq!(paths(&contents(&out)), told(&out));
-    // Nor is half a file taken for a whole one.
+    // Nor is an empty file taken for one; what somebody has packed anew is left as it is.
     let whole = height();
-    std::fs::write(out.join("fagus-sylvatica_Height.png"), &whole[..whole.len() / 2]).unwrap();
-    succeed(folder.path(), &leaf(&["--maps", "basecolor,height", "--skip-existing"]));
-    assert!(height() == whole);
+    let picture = out.join("fagus-sylvatica_Height.png");
+    for (bytes, expected) in [(&b""[..], &whole[..]), (b"packed", b"packed")] {
+        std::fs::write(&picture, bytes).unwrap();
+        succeed(folder.path(), &leaf(&["--maps", "basecolor,height", "--skip-existing"]));
+        assert!(height() == expected);
+    }
 }

@@ -53,11 +53,12 @@ impl Job {
     /// hash of its settings) and made every file that is wanted, which is still there.
     pub(super) fn is_done(&self) -> bool {
         let Some(manifest) = self.manifest() else { return false };
-        // A file that the manifest does not tell of is of another leaf.
+        // A file that the manifest does not tell of is of another leaf. Of its bytes only that there are any
+        // is asked: people pack pictures smaller.
         let is_there = |name: &String| {
-            let size = self.folder.join(name).metadata().ok().filter(|data| data.is_file());
-            let record = manifest.files.iter().find(|file| file.path == *name);
-            size.is_some_and(|data| record.is_some_and(|file| file.bytes as u64 == data.len()))
+            let data = self.folder.join(name).metadata();
+            data.is_ok_and(|data| data.is_file() && data.len() > 0)
+                && manifest.files.iter().any(|file| file.path == *name)
         };
         manifest.settings_sha256 == self.settings_sha256()
             && self.names().iter().filter(|name| *name != MANIFEST_FILE).all(is_there)

@@ -190,6 +190,7 @@ fn smaller(
     let Some(&(spec, order)) = orders.first() else { return Default::default() };
     let lower = (spec.count as f64 * form.proximal_share(depth)).round() as usize;
     let upper = spec.count as usize - lower.min(spec.count as usize);
+    let upper = (upper as f64 * spec.distal_share).round() as usize;
     [(lower, false), (upper, true)].map(|(count, above)| {
         // The tip of the larger tooth stands in the place of one more; the sinus keeps some room.
         let spacing = 1.0 / (count as f64 + 1.0 + SINUS_ROOM);

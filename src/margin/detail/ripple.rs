@@ -10,7 +10,7 @@ use crate::geometry::noise;
 /// Points to a wave.
 const FINENESS: f64 = 24.0;
 
-/// The edge in waves, none at its ends; `longest` is the longest edge (mm), `scale` the length of the
+/// The edge in waves, none at its ends nor before they begin; `longest` is the longest edge (mm), `scale` the length of the
 /// blade (mm).
 pub(super) fn waves(run: Run, spec: &WaveSpec, longest: f64, scale: f64, seed: u32) -> Run {
     if spec.height == 0.0 {
@@ -36,7 +36,7 @@ pub(super) fn waves(run: Run, spec: &WaveSpec, longest: f64, scale: f64, seed: u
         let even = libm::sin(std::f64::consts::TAU * (count * x + phase));
         let uneven = 1.6 * noise::gradient_1d(2.0 * count * x + phase, seed);
         let mixed = even + (uneven - even) * spec.irregularity;
-        let end = (x * count).min((1.0 - x) * count).clamp(0.0, 1.0);
+        let end = ((x - spec.from) * count).min((1.0 - x) * count).clamp(0.0, 1.0);
         spec.height * scale * mixed * end * end * (3.0 - 2.0 * end)
     };
     let reach = 0.25 * length / count;

@@ -74,6 +74,9 @@ parameters! {
         count: count(0, 0..=12, "per tooth"),
         /// How high they stand.
         depth: number(0.35, 0.0..=2.0, "spacings"),
+        /// How many of those on the flank towards the tip there are: 0 leaves that flank bare, as in
+        /// birches.
+        distal_share: number(1.0, 0.0..=1.0, ""),
     }
 }
 
@@ -86,6 +89,8 @@ parameters! {
         count: number(6.0, 0.5..=60.0, "per side"),
         /// How unlike each other they are: 0 even waves, 1 noise.
         irregularity: number(0.4, 0.0..=1.0, ""),
+        /// Where waves begin on the way from the base or valley to the tip.
+        from: number(0.0, 0.0..=0.95, "sides"),
     }
 }
 

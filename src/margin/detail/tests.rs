@@ -149,6 +149,37 @@ fn waves_and_roughness_stay_within_their_heights_and_leave_the_ends() {
 }
 
 #[test]
+fn flanks_towards_the_tip_have_as_many_smaller_teeth_as_their_share_says() {
+    let small = |distal_share: f64| {
+        let mut teeth = TeethSpec { irregularity: 0.0, lean: 0.0, ..serrate() };
+        teeth.second = SmallTeethSpec { count: 6, distal_share, ..SmallTeethSpec::default() };
+        let margin = build(&toothed(teeth));
+        let small =
+            margin.landmarks().iter().filter(|m| m.kind == LandmarkKind::Tooth { order: 2 });
+        let large =
+            margin.landmarks().iter().filter(|m| m.kind == LandmarkKind::Tooth { order: 1 });
+        small.count() as f64 / large.count() as f64
+    };
+    // Of upright teeth both flanks are alike: three on each.
+    assert_eq!([1.0, 0.7, 0.0].map(small), [6.0, 5.0, 3.0]);
+}
+
+#[test]
+fn before_waves_begin_a_side_is_as_it_was() {
+    let mut spec = MarginSpec::default();
+    (spec.waves.height, spec.waves.from) = (0.03, 0.6);
+    let plain = margin::entire(&spec).expect("a margin");
+    let away = |margin: &Margin, upper: bool| {
+        // Both sides are well past half of their way at this height.
+        let here = margin.outline().iter().filter(|p| (p.y > 0.5 * spec.length_mm) == upper);
+        here.map(|&p| outside(plain.outline(), p).abs()).fold(0.0, f64::max)
+    };
+    let margin = build(&spec);
+    assert!(away(&margin, false) < 0.02, "{}", away(&margin, false));
+    assert!(away(&margin, true) > 1.0, "{}", away(&margin, true));
+}
+
+#[test]
 fn teeth_too_fine_name_the_key_the_value_and_the_bound() {
     let spec = toothed(TeethSpec { count: 0, per_cm: 60.0, ..serrate() });
     let small = MarginSpec { length_mm: 80.0, ..spec };

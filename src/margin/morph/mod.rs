@@ -162,6 +162,7 @@ impl MorphPath {
         spec.waves.height = mix(|spec| spec.waves.height);
         spec.waves.count = mix(|spec| spec.waves.count);
         spec.waves.irregularity = mix(|spec| spec.waves.irregularity);
+        spec.waves.from = mix(|spec| spec.waves.from);
         spec.roughness.height_mm = mix(|spec| spec.roughness.height_mm);
         spec.roughness.grain_mm = mix(|spec| spec.roughness.grain_mm);
         match &self.way {

@@ -16,6 +16,7 @@ use glam::DVec2;
 
 pub(super) use self::texel::{Injury, WoundRow};
 use super::guide::{Guide, Lattice, Place, between, mixed};
+use crate::geometry::polygon;
 use crate::margin::Margin;
 use crate::parameter::parameters;
 use crate::raster::Grid;
@@ -142,6 +143,9 @@ impl Wounds {
     }
 }
 
+/// A piece or a gap is no smaller than this (cells of the guide's nodes).
+const LEAST_RING_NODES: f64 = 1.0;
+
 fn rings(nodes: &[Wound], guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>> {
     if nodes.iter().all(|node| node[GONE] <= 0.0) {
         return Vec::new();
@@ -157,7 +161,9 @@ fn rings(nodes: &[Wound], guide: &Guide, frame: &TextureFrame) -> Vec<Vec<DVec2>
         ring.reverse();
         ring
     };
-    contours(&field, 0.0).into_iter().map(in_mm).collect()
+    // What is smaller than a cell is the end of a tooth that passes between two nodes: nothing has come off there.
+    let seen = |ring: &Vec<DVec2>| polygon::signed_area(ring).abs() >= LEAST_RING_NODES;
+    contours(&field, 0.0).into_iter().filter(seen).map(in_mm).collect()
 }
 
 /// A blade that is being hurt.

@@ -9,15 +9,17 @@
 mod lattice;
 mod panel;
 mod smooth;
+mod spread;
 
 use std::ops::Range;
 
 use glam::DVec2;
 
 pub(super) use self::lattice::Lattice;
-use self::lattice::{coarse_edges, vein_lines};
+use self::lattice::vein_lines;
 use self::panel::panels;
 use self::smooth::{NOISE_NODES_MM, Smooth, SmoothFields};
+use self::spread::Spread;
 use super::strip::{LANES, Lane};
 use crate::geometry::polygon;
 use crate::margin::Margin;
@@ -67,14 +69,6 @@ pub(super) const NODES_OF_WOUNDS: usize = 512;
 /// What has nothing sharp lies on no more nodes a side than these: on a leaf of 100 mm every fifth of a
 /// millimetre.
 const SMOOTH_NODES: usize = 512;
-
-/// Colour that spreads from a vein further than so many nodes of the guide (the vein itself is a fifteenth
-/// of that wide) lies on the smooth lattice, where the crest of a narrower one would come and go between the
-/// nodes; a faint colour does so unseen.
-const WIDE_NODES: f32 = 16.0;
-
-/// Colour that spreads no further than this is never drawn on a lattice twice as coarse.
-const NARROW_NODES: f32 = 4.0;
 
 /// The coarse grids.
 #[derive(Debug)]
@@ -146,26 +140,19 @@ impl Guide {
             first.zip(last).map_or(0..0, |(first, last)| first..last + 1)
         });
         let spans: Vec<Range<usize>> = spans.collect();
-        // A vein reaches half as many nodes of a lattice with half as many.
-        let wide_nodes = (WIDE_NODES * reach.vein_strength).max(NARROW_NODES);
-        let wide = wide_nodes * coarse.side as f32 / side as f32;
-        let spreading = coarse_edges(venation, reach.vein_spread);
-        let coarse_nodes = || vec![0.0; coarse.side * coarse.side];
         let major = coarse.distances(&major, &spans);
+        let spread = Spread::new(&lattice, &coarse, venation, reach);
         let smooth = SmoothFields {
             side: coarse.side,
             panel: panels(coarse.side, coarse.spacing(), &major, &spans),
             major,
             speckle: coarse.speckle_weights(reach.speckles, reach.speckle_mm),
-            from_wide: coarse
-                .vein_weights(venation, &spreading, reach, wide..f32::INFINITY)
-                .unwrap_or_else(coarse_nodes),
+            from_wide: spread.wide,
             edge,
             spans,
         };
         let fine_spans = smooth.spans_at(side);
         let vein = lattice.distances(&veins, &fine_spans);
-        let narrow = lattice.vein_weights(venation, &spreading, reach, 0.0..wide_nodes);
         let even = coarse.spacing() <= NOISE_NODES_MM;
         let smooth = smooth.nodes(if even { &coarse } else { &lattice }, seed);
         let columns = |side: usize| {
@@ -179,7 +166,7 @@ impl Guide {
             side,
             per_texel: side as f32 / size as f32,
             vein,
-            narrow,
+            narrow: spread.narrow,
             columns: columns(side),
             smooth_columns: columns(smooth.side),
             smooth,

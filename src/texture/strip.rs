@@ -33,6 +33,9 @@ const FIBRE_STRETCH: f32 = 0.08;
 /// Further than this outside a skeletonised area (mm) nothing of it is seen.
 const FAR_OUTSIDE_MM: f32 = -3.0;
 
+/// Veins of this radius (mm) keep half of their green where all around them is eaten.
+const ALIVE_MM: f32 = 0.2;
+
 /// What covers less of a texel is not there in 8 bits.
 pub(super) const LEAST_SEEN: f32 = 0.5 / 255.0;
 
@@ -226,7 +229,10 @@ impl Strip {
                 let net = third.max(0.9 * fourth).max(0.5 * fifth);
                 let kept = (1.6 * self.vein.cover[i]).max(1.5 * net).min(1.0);
                 self.blade[i] *= 1.0 - bare * (1.0 - kept);
-                injury.brown = injury.brown.max(0.55 * bare);
+                // A large vein stays alive, as does the petiole that it runs into.
+                let square = self.vein.radius[i] * self.vein.radius[i];
+                let large = square / (square + ALIVE_MM * ALIVE_MM);
+                injury.brown = injury.brown.max(0.55 * bare * (1.0 - large));
             }
             for (lane, value) in self.injured.iter_mut().zip(injury.array()) {
                 lane[i] = value;

@@ -5,17 +5,12 @@ use std::ops::Range;
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-use super::Reach;
 use crate::raster::coverage::Capsule;
 use crate::raster::distance::NearestByRows;
 use crate::texture::banded::Banded;
-use crate::texture::fields::BRANCH_FLARE;
 use crate::texture::pen::{Axis, BLOCK, Pen, block};
 use crate::units::TextureFrame;
 use crate::veins::Venation;
-
-/// Where fine veins are faint, from this radius on (mm) a vein's colour is full: that of a tertiary.
-const FULL_MM: f64 = 0.09;
 
 /// Where "far away" ends (mm), for leaves without the thing that a distance is to.
 const FAR_MM: f32 = 1e4;
@@ -139,37 +134,6 @@ impl Lattice<'_> {
         distances
     }
 
-    /// The largest w = h (1 − distance / (spread × width)) over those of some vein edges whose colour reaches so
-    /// far (nodes); `None` where none does. The height h is 1; where fine veins are faint, it falls with the width.
-    pub(super) fn vein_weights(
-        &self,
-        venation: &Venation,
-        edges: &[(u32, u32)],
-        reach: &Reach<'_>,
-        far: Range<f32>,
-    ) -> Option<Vec<f32>> {
-        let &Reach { vein_spread: spread, faint_veins, .. } = reach;
-        let per_mm = self.frame.pixels_per_mm(self.side);
-        let position = |node: u32| {
-            let p = venation.graph().positions()[node as usize];
-            self.frame.pixel_from_leaf(p, self.side).as_vec2()
-        };
-        let reach = |node: u32| 2.0 * spread * venation.radii()[node as usize] * per_mm;
-        let cone = |(a, b): (u32, u32)| {
-            let capsule = Capsule {
-                a: position(a),
-                b: position(b),
-                radius_a: reach(a).min(reach(b) * BRANCH_FLARE) as f32,
-                radius_b: reach(b) as f32,
-            };
-            let width = venation.radii()[b as usize] / FULL_MM;
-            (capsule, if faint_veins { (width * width).min(1.0) as f32 } else { 1.0 })
-        };
-        let cones = edges.iter().copied().map(cone);
-        let cones: Vec<_> = cones.filter(|(cone, _)| far.contains(&cone.widest())).collect();
-        (!cones.is_empty()).then(|| self.weights(&cones))
-    }
-
     /// The largest w = 1 − distance / reach over all speckles.
     pub(super) fn speckle_weights(&self, speckles: &[DVec2], reach_mm: f64) -> Vec<f32> {
         let reach = (reach_mm * self.frame.pixels_per_mm(self.side)) as f32;
@@ -183,7 +147,8 @@ impl Lattice<'_> {
         self.weights(&speckles.iter().map(cone).collect::<Vec<_>>())
     }
 
-    fn weights(&self, cones: &[Cone]) -> Vec<f32> {
+    /// The largest height of some cones over every node.
+    pub(super) fn weights(&self, cones: &[Cone]) -> Vec<f32> {
         let side = self.side;
         let rows = |(cone, _): &Cone| {
             let [_, rows] = cone.pixels(cone.widest(), side, 0..side);
@@ -205,7 +170,7 @@ impl Lattice<'_> {
 const BAND: usize = 32;
 
 /// The height of a cone on the axis of a capsule; at its radius it is 0.
-type Cone = (Capsule, f32);
+pub(super) type Cone = (Capsule, f32);
 
 /// Cones over some rows of nodes, of which the highest counts.
 struct Cones<'a> {
@@ -314,33 +279,4 @@ impl Stretch {
         let t = to.dot(self.per_along).clamp(0.0, 1.0);
         (to - self.along * t).length_squared()
     }
-}
-
-/// An edge is short at this share of the reach: from its chord a vein strays by a hundredth of that.
-const SHORT: f64 = 0.3;
-
-/// The vein edges with short ones in a row replaced by one, as long as it is short against the
-/// reach of the colour: a midrib of 300 nodes would otherwise paint 300 overlapping discs. None where no colour
-/// spreads.
-pub(super) fn coarse_edges(venation: &Venation, spread: f64) -> Vec<(u32, u32)> {
-    if spread <= 0.0 {
-        return Vec::new();
-    }
-    let graph = venation.graph();
-    let children = graph.child_counts();
-    // The last node on the way to each node from which no edge has been drawn yet.
-    let mut start: Vec<u32> = (0..graph.len() as u32).collect();
-    let mut edges = Vec::new();
-    for (parent, child) in graph.edges() {
-        let from = start[parent as usize];
-        let length = graph.positions()[from as usize].distance(graph.positions()[child as usize]);
-        let reach = 2.0 * spread * venation.radii()[child as usize];
-        if length < SHORT * reach && children[child as usize] > 0 {
-            start[child as usize] = from;
-        } else {
-            edges.push((from, child));
-        }
-    }
-    edges.extend(graph.joins());
-    edges
 }

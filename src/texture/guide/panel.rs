@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{between, mixed};
+use super::between;
+use super::smooth::refined;
 use crate::raster::Grid;
 use crate::raster::smooth::gaussian;
 
@@ -24,13 +25,18 @@ pub(super) fn panels(
     // bends less sharply than it would on all of them.
     let half = (side / 2).max(2);
     let per_node = side as f32 / half as f32;
-    let places: Vec<_> = (0..half).map(|i| between(i, per_node, side)).collect();
     let (mut known, mut risen) = (Grid::filled(half, half, 0.0), Grid::filled(half, half, 0.0));
-    for (y, &(row, _)) in places.iter().enumerate() {
-        for (x, &(column, _)) in places.iter().enumerate() {
-            if spans[row].contains(&column) {
-                let distance = major[row * side + column];
-                (known[(x, y)], risen[(x, y)]) = (1.0, distance / (distance + HALF_MM));
+    for y in 0..half {
+        for x in 0..half {
+            // Of the four nodes around, those that are known.
+            let corner = [x, y].map(|i| between(i, per_node, side).0);
+            for (column, row) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let (column, row) = (corner[0] + column, corner[1] + row);
+                if spans[row].contains(&column) {
+                    let distance = major[row * side + column];
+                    known[(x, y)] += 1.0;
+                    risen[(x, y)] += distance / (distance + HALF_MM);
+                }
             }
         }
     }
@@ -40,15 +46,7 @@ pub(super) fn panels(
     for (risen, known) in risen.values_mut().iter_mut().zip(known.values()) {
         *risen = if *known > 0.0 { *risen / known } else { 0.0 };
     }
-    let back: Vec<_> = (0..side).map(|i| between(i, 1.0 / per_node, half)).collect();
-    let node = |&(row, t): &(usize, f32), &(column, s): &(usize, f32)| {
-        let [above, below] = [row, row + 1].map(|row| {
-            let [a, b] = [column, column + 1].map(|column| risen[(column, row)]);
-            [a + (b - a) * s]
-        });
-        mixed(&above, &below, t)[0]
-    };
-    back.iter().flat_map(|row| back.iter().map(move |column| node(row, column))).collect()
+    refined(risen.values(), half, side)
 }
 
 #[cfg(test)]

@@ -75,6 +75,20 @@ impl SmoothFields {
     }
 }
 
+/// What lies on a square lattice read between its nodes, on one with so many a side.
+pub(super) fn refined(nodes: &[f32], side: usize, to: usize) -> Vec<f32> {
+    let places: Vec<_> = (0..to).map(|i| between(i, side as f32 / to as f32, side)).collect();
+    let mut refined = Vec::with_capacity(to * to);
+    let mut row = Vec::with_capacity(side);
+    for &(i, t) in &places {
+        let (above, below) = (&nodes[i * side..(i + 1) * side], &nodes[(i + 1) * side..]);
+        row.clear();
+        row.extend(above.iter().zip(below).map(|(a, b)| a + (b - a) * t));
+        refined.extend(places.iter().map(|&(j, s)| row[j] + (row[j + 1] - row[j]) * s));
+    }
+    refined
+}
+
 /// A row of smooth nodes to be filled.
 struct NodeRow<'a> {
     lattice: &'a Lattice<'a>,

@@ -27,6 +27,9 @@ pub(crate) struct OutputArgs {
     /// Lines of the svg: print, plotter or laser [default: the file's, else print].
     #[arg(long, value_name = "STYLE")]
     svg_style: Option<String>,
+    /// Draw the outline of svg and dxf around blade and petiole, in one line.
+    #[arg(long)]
+    petiole: bool,
     /// Leave veins out of svg and dxf that are narrower than this, in mm [default: the file's, else 0].
     #[arg(long, value_name = "MM")]
     min_width: Option<f64>,
@@ -47,6 +50,7 @@ impl OutputArgs {
         set("--mips", "mips", self.mips.then(|| "true".to_owned()))?;
         set("--card", "card", self.card.clone())?;
         set("--svg-style", "svg_style", self.svg_style.clone())?;
+        set("--petiole", "petiole", self.petiole.then(|| "true".to_owned()))?;
         set("--min-width", "least_width_mm", self.min_width.map(|width| width.to_string()))?;
         Ok(())
     }

@@ -23,6 +23,7 @@ pub mod segment_grid;
 pub mod segments;
 pub mod sparse;
 pub mod triangulate;
+pub mod union;
 pub mod whole;
 pub mod z_order;
 

@@ -10,6 +10,7 @@ use super::map_files::{self, MapFile, Pictures, Texts};
 use super::tables::Table;
 use super::{FormatKind, GENERATOR, MANIFEST_FILE, SPEC_FILE};
 use super::{dxf, file_stem, glb, graph, graphml, obj, remains, svg, usda};
+use crate::geometry::union::united;
 use crate::margin::Margin;
 use crate::pipeline::Leaf;
 use crate::seed::Seed;
@@ -60,6 +61,18 @@ impl<'a> LeafFiles<'a> {
             roughness: leaf.spec.relief.roughness,
             output,
         }
+    }
+}
+
+impl LeafFiles<'_> {
+    /// The rings to be drawn in place of the margin; none where that is whole and drawn alone.
+    fn drawn_rings(&self) -> Vec<Vec<DVec2>> {
+        let rings = &self.textures.rings;
+        if !self.output.petiole || self.textures.petiole.is_empty() {
+            return rings.clone();
+        }
+        let whole = [self.margin.outline().to_vec()];
+        united(if rings.is_empty() { &whole } else { rings }, &self.textures.petiole)
     }
 }
 
@@ -215,12 +228,12 @@ impl Work<'_> {
                     style: leaf.output.svg_style,
                     least_width_mm: leaf.output.least_width_mm,
                 };
-                let rings = &leaf.textures.rings;
-                svg::svg(&drawing, leaf.margin, Some(leaf.venation), card.frame, rings).into()
+                let rings = leaf.drawn_rings();
+                svg::svg(&drawing, leaf.margin, Some(leaf.venation), card.frame, &rings).into()
             }
             Content::CutLines => {
-                let rings = &leaf.textures.rings;
-                dxf::dxf(leaf.margin, leaf.venation, rings, leaf.output.least_width_mm).into()
+                let rings = leaf.drawn_rings();
+                dxf::dxf(leaf.margin, leaf.venation, &rings, leaf.output.least_width_mm).into()
             }
             Content::Graph => graph::VeinDocument::new(leaf.margin, leaf.venation).to_json().into(),
             Content::GraphMl => graphml::graphml(leaf.venation).into(),

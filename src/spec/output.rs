@@ -139,6 +139,8 @@ parameters! {
         card: choice(CardShape, CardShape::Square),
         /// What the lines of the svg are for.
         svg_style: choice(SvgStyle, SvgStyle::Print),
+        /// Whether the outline in svg and dxf goes around the petiole, too, in one line with the blade's.
+        petiole: flag(false),
         /// Veins narrower than this are left out of svg and dxf: no cutter or pen could keep them.
         least_width_mm: number(0.0, 0.0..=100.0, "mm"),
     }
@@ -194,6 +196,8 @@ pub struct Output {
     pub card: CardShape,
     /// What the lines of the SVG are for.
     pub svg_style: SvgStyle,
+    /// Whether the outline that is drawn is that of the blade and the petiole.
+    pub petiole: bool,
     /// Veins narrower than this are not drawn (mm).
     pub least_width_mm: f64,
 }
@@ -236,6 +240,7 @@ impl OutputSpec {
             mips: self.mips,
             card: self.card,
             svg_style: self.svg_style,
+            petiole: self.petiole,
             least_width_mm: self.least_width_mm,
         })
     }

@@ -121,6 +121,7 @@ impl AtlasSheet {
             height_range_mm,
             thickness_range_mm,
             petiole_end: DVec2::ZERO,
+            petiole: Vec::new(),
             albedo: self.albedo,
             rings: Vec::new(),
         }

@@ -102,6 +102,7 @@ impl<'a> Easel<'a> {
             height_range_mm: scene.height_range_mm(),
             thickness_range_mm: scene.thickness_range_mm(),
             petiole_end: layout.stalk.end(),
+            petiole: layout.stalk.outline(),
             albedo: paint.colour.albedo,
             rings: layout.wounds.as_ref().map_or_else(Vec::new, |wounds| wounds.rings().to_vec()),
         };

@@ -192,6 +192,8 @@ pub struct TextureSet {
     pub thickness_range_mm: f64,
     /// Where the petiole leaves the stem, its far end (mm).
     pub petiole_end: glam::DVec2,
+    /// The outline of the petiole (mm), which begins within the blade; empty where there is none.
+    pub petiole: Vec<glam::DVec2>,
     /// What the base colour holds.
     pub albedo: Albedo,
     /// The outline of what is left of a damaged blade and of the gaps in it (mm): anticlockwise

@@ -35,6 +35,9 @@ const CUSHION_RADII: f32 = 7.0;
 /// How far its end bulges out, in radii: a scar, no ball.
 const SCAR: f32 = 0.22;
 
+/// Straight pieces of the line around that.
+const END_PIECES: usize = 8;
+
 /// Straight pieces of the stalk: at 80° of bend they turn by 2° each, which no eye finds.
 const PIECES: usize = 40;
 
@@ -137,6 +140,29 @@ impl Stalk {
     /// The far end of its axis (mm).
     pub(super) fn end(&self) -> DVec2 {
         self.points[self.points.len() - 1]
+    }
+
+    /// The line around it (mm), anticlockwise; nothing where there is none.
+    pub(super) fn outline(&self) -> Vec<DVec2> {
+        let last = self.points.len() - 1;
+        if last == 0 {
+            return Vec::new();
+        }
+        let ahead = |i: usize| {
+            let (a, b) = (self.points[i.saturating_sub(1)], self.points[(i + 1).min(last)]);
+            (b - a).normalize_or_zero()
+        };
+        let side = |i: usize, turn: f64| self.points[i] - ahead(i).perp() * (turn * self.radii[i]);
+        // Down on the left of who looks at it, around the end, and up again.
+        let end = (1..END_PIECES).map(|k| {
+            let turned = Angle::from_degrees(180.0 * k as f64 / END_PIECES as f64);
+            let radius = self.radii[last];
+            let aside = -ahead(last).perp() * (turned.cos() * radius);
+            self.points[last] + aside + ahead(last) * (turned.sin() * f64::from(SCAR) * radius)
+        });
+        let (down, up) =
+            ((0..=last).map(|i| side(i, 1.0)), (0..=last).rev().map(|i| side(i, -1.0)));
+        down.chain(end).chain(up).collect()
     }
 
     /// The greatest radius (mm).
@@ -278,9 +304,23 @@ mod tests {
     }
 
     #[test]
+    fn the_line_around_it_is_as_wide_and_as_long_as_it() {
+        let spec = PetioleSpec { length_mm: 20.0, bend_deg: 0.0, ..PetioleSpec::default() };
+        let stalk = Stalk::new(&spec, 0.6, &[], true);
+        let outline = stalk.outline();
+        let area = crate::geometry::polygon::signed_area(&outline);
+        let mean = stalk.radii.windows(2).map(|r| r[0] + r[1]).sum::<f64>() / PIECES as f64;
+        assert!((area - 20.0 * mean).abs() < 0.6, "{area} {mean}");
+        let bounds = Rect::around(outline);
+        assert!((bounds.max.x - stalk.widest()).abs() < 1e-6 && bounds.max.y.abs() < 1e-9);
+        assert!((bounds.min.y + 20.0 + f64::from(SCAR) * stalk.radii[PIECES]).abs() < 1e-6);
+    }
+
+    #[test]
     fn a_sessile_leaf_has_none() {
         let spec = PetioleSpec { length_mm: 0.0, ..PetioleSpec::default() };
         let stalk = Stalk::new(&spec, 0.4, &[], true);
+        assert_eq!(stalk.outline(), []);
         assert_eq!((stalk.end(), stalk.widest()), (DVec2::ZERO, 0.0));
     }
 

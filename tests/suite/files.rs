@@ -150,6 +150,7 @@ fn textures(margin: &Margin) -> TextureSet {
         height_range_mm: 0.75,
         thickness_range_mm: 1.5,
         petiole_end,
+        petiole: Vec::new(),
         albedo: venation::texture::pigment::Albedo::Total,
         rings: Vec::new(),
     }

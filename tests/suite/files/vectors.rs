@@ -3,8 +3,13 @@
 
 use std::collections::{BTreeMap, HashSet};
 
+use glam::DVec2;
+use venation::geometry::polygon;
 use venation::io::{FormatKind, LeafFiles, encode_leaf};
+use venation::observer::Silent;
+use venation::seed::Seed;
 use venation::spec::{Output, SvgStyle};
+use venation::{pipeline, presets};
 
 use super::{SmallLeaf, text_of};
 
@@ -157,4 +162,55 @@ fn the_dxf_is_in_millimetres_closed_and_draws_nothing_twice() {
     assert!(lines[0].2.contains(&("0".into(), "55".into())), "the apex, 55 mm up");
     assert_eq!(by_layer["CUT"], 2);
     assert_eq!((by_layer["VEINS_PRIMARY"], by_layer["VEINS_SECONDARY"]), (1, 2));
+}
+
+/// The closed lines of a drawing (mm on the page).
+fn rings(svg: &str) -> Vec<Vec<DVec2>> {
+    let closed = |line: &str| {
+        let points = line.strip_prefix("<path d=\"M ")?.strip_suffix(" Z\"/>")?;
+        let point = |text: &str| {
+            let (x, y) = text.split_once(',').expect("two numbers");
+            DVec2::new(x.parse().expect("a number"), y.parse().expect("a number"))
+        };
+        Some(points.split(' ').map(point).collect())
+    };
+    svg.lines().filter_map(closed).collect()
+}
+
+#[test]
+fn one_closed_line_goes_around_blade_and_petiole() {
+    // Lobes beside the petiole; holes; no lobes; a petiole that a shield hides.
+    for (preset, holes) in [("oak", 0.0), ("oak", 0.1), ("beech", 0.0), ("lotus", 0.0)] {
+        let document = presets::find(preset).expect("a preset").document().expect("valid");
+        let mut spec = document.resolve(Seed(1)).expect("valid");
+        (spec.texture.size_px, spec.damage.holes) = (256, holes);
+        spec.veins.spawn_rate /= 20.0;
+        (spec.output.maps, spec.output.formats) = ("none".into(), "svg,dxf".into());
+        let leaf = pipeline::generate(&spec, Seed(1), &mut Silent).expect("a leaf");
+        let [alone, both] = [false, true].map(|petiole| {
+            spec.output.petiole = petiole;
+            let output = spec.output.resolve().expect("words");
+            let files = encode_leaf(&LeafFiles::of(&leaf, "", &output));
+            let lines = text_of(&files, &format!("{}.dxf", spec.name)).matches("\nCUT\n").count();
+            (rings(text_of(&files, &format!("{}.svg", spec.name))), lines)
+        });
+        assert_eq!(both.0.len(), alone.0.len(), "{preset}: no pieces and no gaps more");
+        assert_eq!(both.1, alone.1, "{preset}: the same in the dxf");
+        let area = |rings: &[Vec<DVec2>]| {
+            rings.iter().map(|ring| polygon::signed_area(ring)).sum::<f64>().abs()
+        };
+        let stalk = polygon::signed_area(&leaf.textures.petiole);
+        let more = area(&both.0) - area(&alone.0);
+        let hidden = leaf.grown.margin.is_peltate();
+        let least = if hidden { -1e-6 } else { 0.2 * stalk };
+        let most = if hidden { 1e-6 } else { stalk };
+        assert!(least < more && more < most, "{preset}: {more} of {stalk} mm² stand out");
+        assert!(both.0.iter().all(|ring| polygon::self_crossing(ring).is_none()), "{preset}");
+        let frame = &leaf.textures.frame;
+        let end = leaf.textures.petiole_end;
+        let end = DVec2::new(end.x - frame.min.x, frame.side_mm - (end.y - frame.min.y));
+        let near = |ring: &Vec<DVec2>| ring.iter().map(|p| p.distance(end)).fold(1e9, f64::min);
+        let near = both.0.iter().map(near).fold(1e9, f64::min);
+        assert!(hidden || near < 0.6 * spec.petiole.width_mm, "{preset}: {near} mm from the end");
+    }
 }

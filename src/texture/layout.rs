@@ -14,7 +14,7 @@ use super::fields::{Strokes, midrib};
 use super::guide::{Guide, Lattice, NODES_OF_WOUNDS, Reach};
 use super::net::Net;
 use super::petiole::{PetioleSpec, Stalk};
-use super::pigment::ColourType;
+use super::pigment::{ColourType, Hsv};
 use super::tissue;
 use crate::geometry::segments::SegmentIndex;
 use crate::margin::Margin;
@@ -67,7 +67,8 @@ impl Laid {
         Self {
             size_px: paint.texture.size_px,
             gutter: paint.texture.gutter,
-            petiole: paint.petiole.clone(),
+            // Its colour is no matter of where it lies.
+            petiole: PetioleSpec { colour: Hsv::default(), ..paint.petiole.clone() },
             damage: paint.damage.clone(),
             vein_spread: colour.vein_spread,
             vein_strength: if from_veins { 1.0 } else { colour.undertone as f32 },

@@ -28,13 +28,14 @@ fn painted(spec: &LeafSpec, grown: &Grown) -> TextureSet {
 type Change = (&'static str, fn(&mut LeafSpec));
 
 /// What touches the layout, and what does not.
-const CHANGES: [Change; 20] = [
+const CHANGES: [Change; 21] = [
     ("nothing", |_| {}),
     ("autumn", |spec| spec.state.season = 0.5),
     ("sick", |spec| spec.state.health = 0.3),
     ("young", |spec| spec.state.maturity = 0.2),
     ("flat", |spec| (spec.relief.back_height, spec.relief.pleat_mm) = (0.3, 0.0)),
     ("rough", |spec| spec.relief.roughness = 0.9),
+    ("red petiole", |spec| spec.petiole.colour.hue_deg = 5.0),
     ("yellow", |spec| spec.colour.pigments.leaf.chlorophyll_ug_cm2 = 4.0),
     ("speckled", |spec| spec.colour.r#type = ColourType::Speckled),
     ("many speckles", |spec| spec.colour.speckle_count = 77),

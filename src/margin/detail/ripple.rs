@@ -10,8 +10,8 @@ use crate::geometry::noise;
 /// Points to a wave.
 const FINENESS: f64 = 24.0;
 
-/// The edge in waves, none at its ends nor before they begin; `longest` is the longest edge (mm), `scale` the length of the
-/// blade (mm).
+/// The edge in waves, none at its ends nor before they begin; `longest` is the longest edge (mm), `scale` the
+/// length of the blade (mm).
 pub(super) fn waves(run: Run, spec: &WaveSpec, longest: f64, scale: f64, seed: u32) -> Run {
     if spec.height == 0.0 {
         return run;
